@@ -150,6 +150,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.speed_tolerance = method.velocity_tolerance;
     settings.stop = scene.solver.stop;
     settings.integrator = method.integrator;
+    settings.extent = soft_bodies_ ? Extent::Volume : Extent::Surface;
     settings.begins_by_local_global = method.substeps > 0;
     settings.max_iterations = method.max_iterations;
     settings.outer = method.outer;

@@ -1,9 +1,10 @@
 #include "core/pd/newton/affine_space.h"
 
 #include <algorithm>
-#include <utility>
+#include <array>
 
 #include "core/compute/parallel.h"
+#include "core/pd/newton/block_cholesky.h"
 #include "core/pd/newton/components.h"
 #include "core/quadrature/clusters/cluster_basis.h"
 
@@ -15,14 +16,16 @@ namespace {
 constexpr int kLevel = 3;
 
 /// Values of the functions of the cluster of level `level` that contains a slot.
-Eigen::Vector3d functions_at(const ClusterBasis& basis, int slot, int level)
+template <int kRank>
+Eigen::Matrix<double, kRank, 1> functions_at(const ClusterBasis& basis, int slot, int level)
 {
-    using Transfer = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+    using Functions = Eigen::Matrix<double, kRank, 1>;
+    using Transfer = Eigen::Map<const Eigen::Matrix<double, kRank, kRank, Eigen::RowMajor>>;
     const int leaf = slot / ClusterTree::kLeaf;
-    Eigen::Vector3d values = Eigen::Map<const Eigen::Vector3d>(basis.leaves().data() + 3 * size_t(slot));
+    Functions values = Eigen::Map<const Functions>(basis.leaves().data() + kRank * size_t(slot));
     for (int k = 0; k < level; ++k) {
         const int id = basis.tree().first_of_level(k) + (leaf >> k);
-        values = Transfer(basis.transfers().data() + 9 * size_t(id)).transpose() * values;
+        values = Transfer(basis.transfers().data() + kRank * kRank * size_t(id)).transpose() * values;
     }
     return values;
 }
@@ -34,9 +37,51 @@ void insert_sorted(std::vector<int>& list, int value)
         list.insert(at, value);
 }
 
-} // namespace
+/// @tparam kExtent  of the clusters: their functions are 1 and a coordinate along each of its axes
+template <Extent kExtent>
+class AffineSpaceOf : public AffineSpace {
+public:
+    explicit AffineSpaceOf(std::vector<EmbeddedPoint> points) : AffineSpace(std::move(points)) {}
 
-void AffineSpace::find_clusters(const HessianParts& K)
+    void find_clusters(const HessianParts& K) override;
+    bool update(const HessianParts& K) override;
+    void restrict_to(int cluster, View<const PaddedVec3> r) override;
+    void solve() override;
+    void prolong(int cluster, View<PaddedVec3> z) const override;
+
+private:
+    static constexpr int kFunctions = rank_of(kExtent); ///< of a cluster, each for x, y and z
+    static constexpr int kUnknowns = 3 * kFunctions;
+    using Functions = Eigen::Matrix<double, kFunctions, 1>;
+    using Factor = BlockCholesky<kUnknowns>;
+    using Block = typename Factor::Block;
+
+    /// Contact term on the coarse unknowns: for each cluster that it touches, sum_k weight_k p_k.
+    struct CoarseTerm {
+        std::array<int, 4> cluster{-1, -1, -1, -1};
+        std::array<Functions, 4> weight;
+        Mat3 stiffness;
+    };
+
+    void add_component(std::vector<int> vertices);
+    void find_terms(const std::vector<FrozenTerm>& terms);
+    void find_couplings(const HessianParts& K);
+    bool add_couplings_of_terms();
+    void assemble(const HessianParts& K, int cluster);
+
+    std::vector<int> cluster_of_;      ///< [vertices] -1: none
+    std::vector<Functions> functions_; ///< [vertices] values of the functions of its cluster
+    std::vector<Floats<4>> functions_of_row_;
+    std::vector<CoarseTerm> terms_;
+    std::vector<std::vector<int>> terms_of_;  ///< [clusters] 4 * term + slot
+    std::vector<std::vector<int>> couplings_; ///< [clusters] coupled clusters, ascending, itself included
+    bool has_new_couplings_ = true;
+    Factor factor_;
+    std::vector<typename Factor::Vector> coarse_; ///< [clusters] right-hand side, then solution
+};
+
+template <Extent kExtent>
+void AffineSpaceOf<kExtent>::find_clusters(const HessianParts& K)
 {
     cluster_of_.assign(points_.size(), -1);
     functions_.assign(points_.size(), Functions::Zero());
@@ -49,32 +94,32 @@ void AffineSpace::find_clusters(const HessianParts& K)
         else
             others.insert(others.end(), component.begin(), component.end());
     order_.insert(order_.end(), others.begin(), others.end());
-    functions_of_row_.clear();
-    for (const int v : order_)
-        functions_of_row_.push_back(padded(functions_[v]));
+    functions_of_row_.assign(order_.size(), Floats<4>(0.0F));
+    for (size_t row = 0; row < order_.size(); ++row)
+        for (int a = 0; a < kFunctions; ++a)
+            functions_of_row_[row].value[a] = float(functions_[order_[row]][a]);
     find_couplings(K);
     coarse_.resize(cluster_count());
-    correction_.resize(cluster_count());
-    for (auto& u : correction_)
-        u.fill(PaddedVec3(0.0F));
     has_new_couplings_ = true;
 }
 
-bool AffineSpace::update(const HessianParts& K)
+template <Extent kExtent>
+bool AffineSpaceOf<kExtent>::update(const HessianParts& K)
 {
     const StageScope stage("newton/coarse");
     find_terms(K.terms);
     if (add_couplings_of_terms() || has_new_couplings_)
-        factor_ = BlockCholesky(couplings_);
+        factor_ = Factor(couplings_);
     has_new_couplings_ = false;
     parallel_for(
         kCpu, "newton/coarse_matrix", cluster_count(), [&](int c) { assemble(K, c); }, 1);
     return factor_.factor();
 }
 
-void AffineSpace::add_component(std::vector<int> vertices)
+template <Extent kExtent>
+void AffineSpaceOf<kExtent>::add_component(std::vector<int> vertices)
 {
-    const ClusterTree tree(points_, std::move(vertices));
+    const ClusterTree tree(points_, std::move(vertices), kExtent);
     const ClusterBasis basis(tree, points_);
     const int level = std::min(kLevel, tree.level_count() - 1);
     const int slots = ClusterTree::kLeaf << level;
@@ -84,14 +129,15 @@ void AffineSpace::add_component(std::vector<int> vertices)
             if (v < 0)
                 continue;
             cluster_of_[v] = cluster_count();
-            functions_[v] = functions_at(basis, slot, level);
+            functions_[v] = functions_at<kFunctions>(basis, slot, level);
             order_.push_back(v);
         }
         first_of_cluster_.push_back(int(order_.size()));
     }
 }
 
-void AffineSpace::find_couplings(const HessianParts& K)
+template <Extent kExtent>
+void AffineSpaceOf<kExtent>::find_couplings(const HessianParts& K)
 {
     couplings_.assign(cluster_count(), {});
     for (int c = 0; c < cluster_count(); ++c) {
@@ -108,7 +154,8 @@ void AffineSpace::find_couplings(const HessianParts& K)
     }
 }
 
-void AffineSpace::find_terms(const std::vector<FrozenTerm>& terms)
+template <Extent kExtent>
+void AffineSpaceOf<kExtent>::find_terms(const std::vector<FrozenTerm>& terms)
 {
     terms_.clear();
     terms_of_.assign(cluster_count(), {});
@@ -137,7 +184,8 @@ void AffineSpace::find_terms(const std::vector<FrozenTerm>& terms)
 
 /// True if terms couple clusters that nothing coupled before. Couplings are kept: cloth that touches tends to
 /// touch again, and a known pattern needs no new ordering.
-bool AffineSpace::add_couplings_of_terms()
+template <Extent kExtent>
+bool AffineSpaceOf<kExtent>::add_couplings_of_terms()
 {
     bool is_new = false;
     for (const CoarseTerm& term : terms_)
@@ -154,8 +202,9 @@ bool AffineSpace::add_couplings_of_terms()
 
 /// Writes the rows of a cluster: sum_ij (p_i p_j^T) (x) K_ij over its vertices i. Row sums
 /// S = sum_j p_j K_ij over the vertices j of another cluster come first, so that each K_ij is multiplied by
-/// three numbers and not by nine.
-void AffineSpace::assemble(const HessianParts& K, int cluster)
+/// as many numbers as there are functions, and not by their pairs.
+template <Extent kExtent>
+void AffineSpaceOf<kExtent>::assemble(const HessianParts& K, int cluster)
 {
     const std::vector<int>& columns = couplings_[cluster];
     std::vector<Block> row(columns.size(), Block::Zero());
@@ -196,7 +245,7 @@ void AffineSpace::assemble(const HessianParts& K, int cluster)
                 continue;
             for (int a = 0; a < kFunctions; ++a)
                 for (int b = 0; b < kFunctions; ++b)
-                    row[slot].block<3, 3>(3 * a, 3 * b) += functions_[i][a] * sums[slot][b];
+                    row[slot].template block<3, 3>(3 * a, 3 * b) += functions_[i][a] * sums[slot][b];
             has_sum[slot] = 0;
         }
     }
@@ -206,13 +255,13 @@ void AffineSpace::assemble(const HessianParts& K, int cluster)
             Block& to = row[slot_of(term.cluster[l])];
             for (int a = 0; a < kFunctions; ++a)
                 for (int b = 0; b < kFunctions; ++b)
-                    to.block<3, 3>(3 * a, 3 * b) +=
+                    to.template block<3, 3>(3 * a, 3 * b) +=
                         term.weight[entry % 4][a] * term.weight[l][b] * term.stiffness;
         }
     }
-    // A cluster on a line has fewer functions: the others are zero.
+    // A cluster on a line or in a plane has fewer functions: the others are zero.
     Block& diagonal = row[slot_of(cluster)];
-    for (int a = 0; a < BlockCholesky::kSize; ++a)
+    for (int a = 0; a < kUnknowns; ++a)
         if (diagonal(a, a) == 0.0)
             diagonal(a, a) = 1.0;
 
@@ -220,9 +269,11 @@ void AffineSpace::assemble(const HessianParts& K, int cluster)
         factor_.entry(cluster, int(slot)) = row[slot];
 }
 
-void AffineSpace::restrict_to(int cluster, View<const PaddedVec3> r)
+template <Extent kExtent>
+void AffineSpaceOf<kExtent>::restrict_to(int cluster, View<const PaddedVec3> r)
 {
-    PaddedVec3 sum[kFunctions] = {PaddedVec3(0.0F), PaddedVec3(0.0F), PaddedVec3(0.0F)};
+    PaddedVec3 sum[kFunctions];
+    std::fill(std::begin(sum), std::end(sum), PaddedVec3(0.0F));
     for (int row = first_row(cluster); row < first_row(cluster + 1); ++row)
         for (int a = 0; a < kFunctions; ++a)
             sum[a] += functions_of_row_[row][a] * r[row];
@@ -231,24 +282,36 @@ void AffineSpace::restrict_to(int cluster, View<const PaddedVec3> r)
             coarse_[cluster][3 * a + k] = sum[a][k];
 }
 
-void AffineSpace::solve()
+template <Extent kExtent>
+void AffineSpaceOf<kExtent>::solve()
 {
     factor_.solve(coarse_);
-    for (int c = 0; c < cluster_count(); ++c)
-        for (int a = 0; a < kFunctions; ++a)
-            for (int k = 0; k < 3; ++k)
-                correction_[c][a].value[k] = coarse_[c][3 * a + k];
 }
 
-PaddedVec3 AffineSpace::prolonged(int cluster, int row) const
+template <Extent kExtent>
+void AffineSpaceOf<kExtent>::prolong(int cluster, View<PaddedVec3> z) const
 {
-    const std::array<PaddedVec3, kFunctions>& u = correction_[cluster];
-    const PaddedVec3& p = functions_of_row_[row];
-    PaddedVec3 result;
-    for (int k = 0; k < 4; ++k)
-        result.value[k] =
-            p.value[0] * u[0].value[k] + p.value[1] * u[1].value[k] + p.value[2] * u[2].value[k];
-    return result;
+    PaddedVec3 u[kFunctions];
+    for (int a = 0; a < kFunctions; ++a)
+        u[a] = padded(Vec3(coarse_[cluster].template segment<3>(3 * a).template cast<double>()));
+    for (int row = first_row(cluster); row < first_row(cluster + 1); ++row) {
+        const Floats<4>& p = functions_of_row_[row];
+        for (int k = 0; k < 4; ++k) {
+            float sum = p.value[0] * u[0].value[k];
+            for (int a = 1; a < kFunctions; ++a)
+                sum += p.value[a] * u[a].value[k];
+            z[row].value[k] = sum;
+        }
+    }
+}
+
+} // namespace
+
+std::unique_ptr<AffineSpace> AffineSpace::make(std::vector<EmbeddedPoint> points, Extent extent)
+{
+    if (extent == Extent::Surface)
+        return std::make_unique<AffineSpaceOf<Extent::Surface>>(std::move(points));
+    return std::make_unique<AffineSpaceOf<Extent::Volume>>(std::move(points));
 }
 
 } // namespace toile

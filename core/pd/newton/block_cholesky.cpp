@@ -10,44 +10,51 @@ namespace toile {
 
 namespace {
 
-constexpr int kSize = BlockCholesky::kSize;
-using Block = BlockCholesky::Block;
+template <int N>
+using Square = Eigen::Matrix<double, N, N>;
+template <int N>
+using FloatSquare = Eigen::Matrix<float, N, N>;
+template <int N>
+using Column = Eigen::Matrix<float, N, 1>;
 
 // Plain loops: the order of Eigen's sums depends on the alignment of the operands, and so on what was
 // allocated before. Results would then differ from run to run.
 
 /// C -= A B^T
-void subtract_product(Block& C, const Block& A, const Block& B)
+template <int N>
+void subtract_product(Square<N>& C, const Square<N>& A, const Square<N>& B)
 {
-    for (int j = 0; j < kSize; ++j)
-        for (int k = 0; k < kSize; ++k)
-            for (int i = 0; i < kSize; ++i)
+    for (int j = 0; j < N; ++j)
+        for (int k = 0; k < N; ++k)
+            for (int i = 0; i < N; ++i)
                 C(i, j) -= A(i, k) * B(j, k);
 }
 
 /// A B^T
-Block product_with_transposed(const Block& A, const Block& B)
+template <int N>
+Square<N> product_with_transposed(const Square<N>& A, const Square<N>& B)
 {
-    Block C = Block::Zero();
-    for (int j = 0; j < kSize; ++j)
-        for (int k = 0; k < kSize; ++k)
-            for (int i = 0; i < kSize; ++i)
+    Square<N> C = Square<N>::Zero();
+    for (int j = 0; j < N; ++j)
+        for (int k = 0; k < N; ++k)
+            for (int i = 0; i < N; ++i)
                 C(i, j) += A(i, k) * B(j, k);
     return C;
 }
 
 /// Replaces the lower triangle of A by its Cholesky factor; zero above.
 /// @return false if A is not positive definite
-bool factor_in_place(Block& A)
+template <int N>
+bool factor_in_place(Square<N>& A)
 {
-    for (int j = 0; j < kSize; ++j) {
+    for (int j = 0; j < N; ++j) {
         if (!(A(j, j) > 0.0))
             return false;
         const double diagonal = std::sqrt(A(j, j));
-        for (int i = j; i < kSize; ++i)
+        for (int i = j; i < N; ++i)
             A(i, j) /= diagonal;
-        for (int k = j + 1; k < kSize; ++k)
-            for (int i = k; i < kSize; ++i)
+        for (int k = j + 1; k < N; ++k)
+            for (int i = k; i < N; ++i)
                 A(i, k) -= A(i, j) * A(k, j);
         for (int i = 0; i < j; ++i)
             A(i, j) = 0.0;
@@ -56,12 +63,13 @@ bool factor_in_place(Block& A)
 }
 
 /// Inverse of a lower triangle.
-Block inverse_of_lower(const Block& L)
+template <int N>
+Square<N> inverse_of_lower(const Square<N>& L)
 {
-    Block inverse = Block::Zero();
-    for (int j = 0; j < kSize; ++j) {
+    Square<N> inverse = Square<N>::Zero();
+    for (int j = 0; j < N; ++j) {
         inverse(j, j) = 1.0 / L(j, j);
-        for (int i = j + 1; i < kSize; ++i) {
+        for (int i = j + 1; i < N; ++i) {
             double sum = 0.0;
             for (int k = j; k < i; ++k)
                 sum += L(i, k) * inverse(k, j);
@@ -72,21 +80,21 @@ Block inverse_of_lower(const Block& L)
 }
 
 /// y -= A x
-template <typename FloatBlock>
-void subtract_times(BlockCholesky::Vector& y, const FloatBlock& A, const BlockCholesky::Vector& x)
+template <int N>
+void subtract_times(Column<N>& y, const FloatSquare<N>& A, const Column<N>& x)
 {
-    for (int k = 0; k < kSize; ++k)
-        for (int i = 0; i < kSize; ++i)
+    for (int k = 0; k < N; ++k)
+        for (int i = 0; i < N; ++i)
             y[i] -= A(i, k) * x[k];
 }
 
 /// y -= A^T x
-template <typename FloatBlock>
-void subtract_transposed_times(BlockCholesky::Vector& y, const FloatBlock& A, const BlockCholesky::Vector& x)
+template <int N>
+void subtract_transposed_times(Column<N>& y, const FloatSquare<N>& A, const Column<N>& x)
 {
-    for (int k = 0; k < kSize; ++k) {
+    for (int k = 0; k < N; ++k) {
         float sum = 0.0F;
-        for (int i = 0; i < kSize; ++i)
+        for (int i = 0; i < N; ++i)
             sum += A(i, k) * x[i];
         y[k] -= sum;
     }
@@ -94,7 +102,8 @@ void subtract_transposed_times(BlockCholesky::Vector& y, const FloatBlock& A, co
 
 } // namespace
 
-BlockCholesky::BlockCholesky(const std::vector<std::vector<int>>& columns)
+template <int kSize>
+BlockCholesky<kSize>::BlockCholesky(const std::vector<std::vector<int>>& columns)
 {
     first_entry_.push_back(0);
     for (const std::vector<int>& row : columns) {
@@ -112,7 +121,8 @@ BlockCholesky::BlockCholesky(const std::vector<std::vector<int>>& columns)
 
 /// Eliminates the row with the fewest neighbours in turn, and connects those with each other. The smallest
 /// number decides between equals.
-void BlockCholesky::find_order(const std::vector<std::vector<int>>& columns)
+template <int kSize>
+void BlockCholesky<kSize>::find_order(const std::vector<std::vector<int>>& columns)
 {
     const int n = int(columns.size());
     std::vector<std::set<int>> neighbours(n);
@@ -150,7 +160,8 @@ void BlockCholesky::find_order(const std::vector<std::vector<int>>& columns)
     }
 }
 
-bool BlockCholesky::factor()
+template <int kSize>
+bool BlockCholesky<kSize>::factor()
 {
     const StageScope stage("linear/block_factor");
     std::fill(L_.begin(), L_.end(), Block::Zero());
@@ -173,14 +184,15 @@ bool BlockCholesky::factor()
 }
 
 /// Scales a column of L and subtracts its products from the columns to the right.
-void BlockCholesky::eliminate(int column)
+template <int kSize>
+void BlockCholesky<kSize>::eliminate(int column)
 {
     const int first = first_below_[column], last = first_below_[column + 1];
     const Block inverse = inverse_of_lower(diagonal_[column]);
-    inverse_diagonal_[column] = inverse.cast<float>();
+    inverse_diagonal_[column] = inverse.template cast<float>();
     for (int e = first; e < last; ++e) {
         L_[e] = product_with_transposed(L_[e], inverse);
-        applied_[e] = L_[e].cast<float>();
+        applied_[e] = L_[e].template cast<float>();
     }
     for (int e = first; e < last; ++e) {
         const int to = below_[e];
@@ -194,7 +206,8 @@ void BlockCholesky::eliminate(int column)
     }
 }
 
-void BlockCholesky::solve(View<Vector> x) const
+template <int kSize>
+void BlockCholesky<kSize>::solve(View<Vector> x) const
 {
     for (int place = 0; place < rows(); ++place)
         y_[place] = x[order_[place]];
@@ -216,5 +229,8 @@ void BlockCholesky::solve(View<Vector> x) const
     for (int place = 0; place < rows(); ++place)
         x[order_[place]] = y_[place];
 }
+
+template class BlockCholesky<9>;
+template class BlockCholesky<12>;
 
 } // namespace toile

@@ -6,12 +6,13 @@
 
 namespace toile {
 
-/// Sparse Cholesky factor A = L L^T of a symmetric positive definite matrix of dense 9 x 9 blocks, for
-/// matrices of some hundred block rows whose values change often. Rows are eliminated in the order of least
-/// degree [George & Liu 1989]. The factor is computed in double precision and applied in single precision.
+/// Sparse Cholesky factor A = L L^T of a symmetric positive definite matrix of dense blocks, for matrices of
+/// some hundred block rows whose values change often. Rows are eliminated in the order of least degree
+/// [George & Liu 1989]. The factor is computed in double precision and applied in single precision.
+/// @tparam kSize  rows of a block: 9 or 12
+template <int kSize>
 class BlockCholesky {
 public:
-    static constexpr int kSize = 9;
     using Block = Eigen::Matrix<double, kSize, kSize>;
     using Vector = Eigen::Matrix<float, kSize, 1>;
 

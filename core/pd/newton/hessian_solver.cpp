@@ -25,16 +25,12 @@ void HessianSolver::update(const HessianParts& K, bool with_coarse)
 {
     if (!std::equal(K.fixed.begin(), K.fixed.end(), fixed_.begin(), fixed_.end())) {
         fixed_.assign(K.fixed.begin(), K.fixed.end());
-        coarse_.find_clusters(K);
-        rows_.find_pattern(K, coarse_.order());
+        coarse_->find_clusters(K);
+        rows_.find_pattern(K, coarse_->order());
         first_of_chunk_.assign(1, 0);
-        cluster_of_row_.assign(rows_.size(), -1);
-        for (int c = 0; c < coarse_.cluster_count(); ++c) {
-            std::fill(cluster_of_row_.begin() + coarse_.first_row(c),
-                      cluster_of_row_.begin() + coarse_.first_row(c + 1), c);
-            if (coarse_.first_row(c + 1) - first_of_chunk_.back() >= kRowsOfChunk)
-                first_of_chunk_.push_back(coarse_.first_row(c + 1));
-        }
+        for (int c = 1; c <= coarse_->cluster_count(); ++c)
+            if (coarse_->first_row(c) - first_of_chunk_.back() >= kRowsOfChunk)
+                first_of_chunk_.push_back(coarse_->first_row(c));
         if (first_of_chunk_.back() < rows_.size())
             first_of_chunk_.push_back(rows_.size());
         for (std::vector<PaddedVec3>* field : {&x_, &r_, &z_, &p_, &product_})
@@ -46,7 +42,7 @@ void HessianSolver::update(const HessianParts& K, bool with_coarse)
     rows_.update(K);
     term_force_.resize(rows_.view().terms.size());
     if (with_coarse)
-        has_coarse_ = coarse_.update(K);
+        has_coarse_ = coarse_->update(K);
 }
 
 /// Runs kernel(first, last, sum) for the rows of each chunk, and adds the sums chunk by chunk: the same bits
@@ -147,18 +143,24 @@ void HessianSolver::add_whole_set()
 /// z = P r; returns r . z.
 double HessianSolver::precondition()
 {
-    const View<const PaddedMat3> inverse = rows_.inverse_diagonal();
+    int with_cluster = 0; // rows before all others
     if (has_coarse_) {
+        const int clusters = coarse_->cluster_count();
+        with_cluster = coarse_->first_row(clusters);
         parallel_for(
-            kCpu, "newton/restrict", coarse_.cluster_count(), [&](int c) { coarse_.restrict_to(c, r_); }, 4);
-        coarse_.solve();
+            kCpu, "newton/restrict", clusters, [&](int c) { coarse_->restrict_to(c, r_); }, 4);
+        coarse_->solve();
+        parallel_for(
+            kCpu, "newton/prolong", clusters, [&](int c) { coarse_->prolong(c, z_); }, 4);
     }
+    const View<const PaddedMat3> inverse = rows_.inverse_diagonal();
     return for_chunks("newton/smooth", [&](int first, int last, double& sum) {
         for (int i = first; i < last; ++i) {
-            z_[i] = inverse[i] * r_[i];
-            if (has_coarse_ && cluster_of_row_[i] >= 0)
-                z_[i] += coarse_.prolonged(cluster_of_row_[i], i);
-            sum += dot(r_[i], z_[i]);
+            PaddedVec3 z = inverse[i] * r_[i];
+            if (i < with_cluster)
+                z += z_[i];
+            z_[i] = z;
+            sum += dot(r_[i], z);
         }
     });
 }

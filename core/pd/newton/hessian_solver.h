@@ -21,7 +21,14 @@ public:
     static constexpr int kMaxIterations = 200;
 
     /// @param points  [vertices] undeformed positions
-    explicit HessianSolver(std::vector<EmbeddedPoint> points) : coarse_(std::move(points)) {}
+    /// @param extent  of the coarse space's clusters
+    HessianSolver(std::vector<EmbeddedPoint> points, Extent extent)
+        : coarse_(AffineSpace::make(std::move(points), extent))
+    {
+    }
+
+    /// Iterations that the matrix of the coarse space costs, about.
+    static constexpr int kPriceOfCoarse = 16;
 
     /// Takes the values of K. Finds rows and clusters anew if other vertices are fixed than before.
     /// @param with_coarse  also of the coarse space, which may be older
@@ -69,13 +76,12 @@ private:
     void add_whole_set();
     double precondition();
 
-    AffineSpace coarse_;
+    std::unique_ptr<AffineSpace> coarse_;
     HessianRows rows_;
     bool has_coarse_ = false;
     std::vector<unsigned char> fixed_; ///< [vertices] for which rows and clusters were found
     const FrozenHessian* whole_set_ = nullptr;
     std::vector<int> first_of_chunk_; ///< [chunks + 1] rows of a task
-    std::vector<int> cluster_of_row_; ///< [rows] -1: none
     std::vector<PaddedVec3> x_, r_, z_, p_, product_, term_force_;
     std::vector<double> sums_;                  ///< [chunks]
     std::vector<Vec3> whole_p_, whole_product_; ///< [vertices] scratch

@@ -32,7 +32,7 @@ NewtonSpace::Solution HostNewton::find_direction(bool is_first, double error)
     if (K == nullptr)
         throw InvalidInput("newton: the objective has no second derivatives; choose another method");
     K->linearise(problem_.x, Definiteness::Projected);
-    solver_.update(K->parts(), is_first);
+    solver_.update(K->parts(), coarse_age_.is_over(is_first));
     correction_.resize(problem_.x.size());
     stop_.begin_direction(is_first);
     const Solution solution = solve(gradient_, error);
@@ -44,6 +44,7 @@ NewtonSpace::Solution HostNewton::solve(View<const Vec3> gradient, double error)
 {
     const HessianSolver::Outcome outcome = solver_.solve(gradient, stop_.at(error), correction_);
     stop_.take(outcome);
+    coarse_age_.take(outcome.iterations);
     return {outcome.iterations, outcome.is_solved, stop_.speed(outcome.error), stop_.speed(outcome.size),
             -0.5 * dot(gradient, correction_)};
 }

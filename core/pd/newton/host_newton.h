@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/pd/energy/active_set_energy.h"
+#include "core/pd/newton/coarse_age.h"
 #include "core/pd/newton/direction_stop.h"
 #include "core/pd/newton/newton_space.h"
 
@@ -24,8 +25,8 @@ public:
         ActiveSetEnergy* active = nullptr; ///< contact; may be null
     };
 
-    /// @param points  [vertices] undeformed positions, for the clusters of the AffineSpace
-    explicit HostNewton(std::vector<EmbeddedPoint> points) : solver_(std::move(points)) {}
+    /// @param points, extent  [vertices] undeformed positions, for the clusters of the AffineSpace
+    HostNewton(std::vector<EmbeddedPoint> points, Extent extent) : solver_(std::move(points), extent) {}
 
     /// Begins a step.
     void set_problem(const Problem& problem);
@@ -53,6 +54,7 @@ private:
     Problem problem_;
     HessianSolver solver_;
     DirectionStop stop_;
+    CoarseAge coarse_age_{HessianSolver::kPriceOfCoarse};
     std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_, kept_;
 
     // Contact ahead, see NewtonSpace::model().

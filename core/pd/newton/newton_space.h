@@ -31,7 +31,7 @@ public:
     virtual double max_speed() = 0;
 
     /// Finds the direction d by K d = -g, with the Hessian K at the current point.
-    /// @param is_first   of the minimisation: the coarse part of the preconditioner is made anew
+    /// @param is_first   of the minimisation
     /// @param error      [m/s] see Solution
     virtual Solution find_direction(bool is_first, double error) = 0;
 

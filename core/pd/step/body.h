@@ -29,6 +29,7 @@ public:
         NestedPcg::Settings contact_solve; ///< while contacts are active
         StepStop stop = StepStop::Error;   ///< what the tolerance bounds
         Integrator integrator = Integrator::ImplicitEuler;
+        Extent extent = Extent::Surface; ///< of what is simulated: for the preconditioner of Newton's method
         /// Newton's method begins with a local and a global step while nothing touches. Needs the inverse of
         /// H, anew for every step length.
         bool begins_by_local_global = true;

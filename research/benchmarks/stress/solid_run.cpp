@@ -181,6 +181,7 @@ Body make_body(const SolidCase& trial, const Solid& solid, const scenes::StepMet
     settings.max_iterations = method.max_iterations;
     settings.outer = method.outer;
     settings.integrator = method.integrator;
+    settings.extent = Extent::Volume;
     settings.begins_by_local_global = false;
     return Body(
         trial.start,

@@ -107,7 +107,7 @@ double DeviceNewton::max_speed() { return speed(bound_); }
 NewtonSpace::Solution DeviceNewton::find_direction(bool is_first, double error)
 {
     freeze_here();
-    solver_.update(problem_.x.device(), problem_.inertia, active(), is_first);
+    solver_.update(problem_.x.device(), problem_.inertia, active(), coarse_age_.is_over(is_first));
     stop_.begin_direction(is_first);
     const Solution solution = solve(gradient_.view(), error);
     parallel_for(space_, "newton/copy_direction", direction_.size(),
@@ -119,6 +119,7 @@ NewtonSpace::Solution DeviceNewton::solve(View<const Vec3> gradient, double erro
 {
     const HessianSolver::Outcome outcome = solver_.solve(gradient, stop_.at(error));
     stop_.take(outcome);
+    coarse_age_.take(outcome.iterations);
     const double promised = active()
                                 ? parallel_sum(space_, "newton/decrease", gradient.size(), 0.0,
                                                PromisedDecrease{gradient, solver_.direction()}, decrease_)

@@ -5,6 +5,7 @@
 #include "core/pd/cuda/newton/newton_kernels.h"
 #include "core/pd/cuda/newton/solver.h"
 #include "core/pd/energy/active_set_energy.h"
+#include "core/pd/newton/coarse_age.h"
 #include "core/pd/newton/direction_stop.h"
 
 namespace toile {
@@ -77,6 +78,7 @@ private:
     DeviceArray<double> energy_;        ///< [vertices and more] parts of the value [J]
     DeviceArray<PaddedVec3> direction_; ///< [vertices] [m]
     DirectionStop stop_;
+    CoarseAge coarse_age_{DeviceHessianSolver::kPriceOfCoarse};
 
     // Contact ahead, see NewtonSpace::model().
     double contact_here_ = 0.0; ///< [J] contact's energy at the current point
