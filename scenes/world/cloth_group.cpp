@@ -130,7 +130,8 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
         report.steps = 1;
         return report;
     }
-    has_jump_ = contact_ && contact_->have_bodies_jumped(dt);
+    const bool have_cores_jumped = soft_bodies_ && soft_bodies_->have_cores_jumped(colliders, dt);
+    has_jump_ = contact_ && (contact_->have_bodies_jumped(dt) || have_cores_jumped);
     may_cross_ = may_cross_ || has_jump_;
     if (may_cross_ && contact_ && contact_->keeps_cloth_apart())
         mark_crossings();
@@ -148,7 +149,8 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
     begin_solids(dt);
     StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), limits_.get());
     may_cross_ =
-        may_cross_ || (contact_ && (contact_->stuck_count() > 0 || contact_->let_through_count() > 0));
+        may_cross_ || (contact_ && (contact_->stuck_count() > 0 || contact_->let_through_count() > 0 ||
+                                    have_cores_jumped)); // flesh has gone where nobody looked
     if (report.status != StepReport::Status::NonFinite)
         end_solids();
     if (contact_) {
@@ -184,10 +186,10 @@ void ClothGroup::judge(double t_t1, const std::vector<Collider>& colliders, Step
                 place_of(contact_->stuck_count() > 0 ? contact_->first_stuck() : first_crossing_, colliders);
             raise(StepReport::Status::Stuck);
         }
-        if (has_jump_) {
-            report.stuck.merge({1, "a body moves faster than 50 m/s and may have left cloth behind"});
-            raise(StepReport::Status::Stuck);
-        }
+    }
+    if (has_jump_) {
+        report.stuck.merge({1, "a body moves faster than 50 m/s and may have left cloth behind"});
+        raise(StepReport::Status::Stuck);
     }
     find_strained(t_t1, colliders, report);
     find_displaced(colliders, report);

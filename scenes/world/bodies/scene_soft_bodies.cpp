@@ -198,6 +198,12 @@ void SceneSoftBodies::mark_fixed(double t_t1, View<unsigned char> fixed) const
     }
 }
 
+bool SceneSoftBodies::have_cores_jumped(const std::vector<Collider>& colliders, double dt) const
+{
+    return std::any_of(bodies_.begin(), bodies_.end(),
+                       [&](const Body& body) { return body.core && body.core->has_jumped(colliders, dt); });
+}
+
 void SceneSoftBodies::update_targets(double t_t1, const std::vector<Collider>& colliders, View<Vec3> targets)
 {
     for (Body& body : bodies_)
