@@ -292,6 +292,22 @@ TEST_F(SoftBodies, DoNotBurdenScenesWithoutThem)
     EXPECT_EQ(world.stages().calls("elastic/project"), 0);
 }
 
+TEST_F(SoftBodies, HaveNoAttributesInCaches)
+{
+    const auto exported = [&](const std::string& cloth) {
+        return refusal(R"("frames": 1, "cloths": [{"name": "sheet", "disc": {}}], "soft_bodies": [)" +
+                       block("jelly", R"("young": 1e3)") +
+                       R"(], "export": [{"file": "a.abc", "attributes": ["strain"], "cloth": )" + cloth +
+                       "}]");
+    };
+    EXPECT_NE(exported(R"("jelly")")
+                  .find("export[0].attributes: are of cloths, and the entry writes none; "
+                        "leave them out, or add a cloth to \"cloth\""),
+              std::string::npos);
+    for (const char* cloth : {R"("all")", R"("sheet")", R"(["jelly", "sheet"])"})
+        EXPECT_EQ(exported(cloth).find("attributes"), std::string::npos) << cloth;
+}
+
 TEST_F(SoftBodies, AreRefusedWithTheReason)
 {
     const auto with = [&](const std::string& keys) {
