@@ -423,7 +423,7 @@ void check_contact(const Document& document, const scenes::Scene& scene)
             document.refuse(key_path, std::to_string(pairs[i].between.size()) + " names; give exactly two");
         for (const std::string& name : pairs[i].between) {
             require_known(document, key_path, "fabric in use, avatar, solid or soft body", name, known);
-            if (const SoftBody* body = replacement_of(scene, name))
+            if (const SoftBody* body = scenes::replacement_of(scene, name))
                 document.refuse(key_path, as_written(name) + " is replaced in contact by soft body " +
                                               as_written(body->name) + "; name that");
         }

@@ -7,7 +7,6 @@
 
 #include "core/base/extension.h"
 #include "export/cache_format.h"
-#include "scenes/format/checks/body_checks.h"
 #include "scenes/format/field.h"
 #include "scenes/format/names.h"
 
@@ -90,7 +89,7 @@ void check_gap(const Document& document, const std::string& at, const scenes::Sc
     for (const Avatar& avatar : scene.avatars) {
         if (std::holds_alternative<Plane>(avatar.shape))
             continue;
-        const SoftBody* body = replacement_of(scene, avatar.name);
+        const SoftBody* body = scenes::replacement_of(scene, avatar.name);
         if (body == nullptr)
             return;
         replaced = as_written(avatar.name) + " is replaced by soft body " + as_written(body->name);
