@@ -26,7 +26,7 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
     int next_surface = first_surface, next_inner = first_inner_;
     for (size_t i = 0; i < loaded.size(); ++i) {
         const scene::SoftBody& settings = scene.soft_bodies[i];
-        rest_tets(loaded[i].rest, loaded[i].source); // checks it, with the numbers of its own
+        volume::require_no_slivers(loaded[i].rest, loaded[i].source); // with the numbers of its own
         Body& body = bodies_.emplace_back();
         body.first_surface = next_surface;
         body.first_inner = next_inner;
