@@ -385,10 +385,14 @@ void check_attachments(const Document& document, const scenes::Scene& scene)
         const std::string key_path = below("attachments", i);
         require_known(document, below(key_path, "cloth"), kind, attachment.cloth, attached);
         check_selection(document, below(key_path, "select"), attachment.select, avatars);
-        if (contains(names_of(scene.soft_bodies), attachment.cloth) &&
-            std::holds_alternative<std::vector<int>>(attachment.select.by))
+        const bool is_filled =
+            std::any_of(scene.soft_bodies.begin(), scene.soft_bodies.end(), [&](const SoftBody& body) {
+                return body.name == attachment.cloth && body.cell.has_value();
+            });
+        if (is_filled && std::holds_alternative<std::vector<int>>(attachment.select.by))
             document.refuse(below(below(key_path, "select"), "vertices"),
-                            "a soft body is not selected by numbers; use box, nearest or all_within");
+                            "the tetrahedra that fill " + as_written(attachment.cloth) +
+                                " have no numbers; use box, nearest or all_within");
         require_known(document, below(key_path, "to"), "avatar", attachment.to, targets);
         if (!attachment.keyframes.empty() && attachment.to != kFixed)
             document.refuse(below(key_path, "keyframes"),

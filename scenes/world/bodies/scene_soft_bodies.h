@@ -89,7 +89,8 @@ private:
             return {unknown(tet[0]), unknown(tet[1]), unknown(tet[2]), unknown(tet[3])};
         }
     };
-    void add_attachments(const Scene& scene, const std::vector<Collider>& colliders, Body& body);
+    void add_attachments(const Scene& scene, const std::vector<Collider>& colliders, View<const int> of_file,
+                         Body& body);
     static void require_one_owner(const Body& body, const std::string& core_location);
     void add_springs();
     static double mass(const Body& body);
