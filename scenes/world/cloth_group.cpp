@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "collision/check/find_crossings.h"
-#include "core/base/long_work.h"
 #include "core/compute/parallel.h"
 #include "garment/energy/air/cuda/loads.h"
-#include "scenes/world/contact_setup.h"
 
 namespace toile::scenes {
 
@@ -481,38 +479,6 @@ bool ClothGroup::is_asleep(double t_t1, const std::vector<Collider>& colliders)
         still_.clear();
     }
     return sleep_.enabled && still_time_ > kSleepDelay;
-}
-
-std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Collider>& colliders,
-                                    const WorldOptions& options)
-{
-    std::vector<SceneCloth> cloths;
-    for (const scene::Cloth& cloth : scene.cloths) {
-        const LongWork::Part part = LongWork::item(cloths.size(), scene.cloths.size());
-        cloths.emplace_back(scene, cloth, colliders, options);
-        LongWork::update(1.0);
-    }
-    return cloths;
-}
-
-std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths, SceneBodies bodies,
-                                    const std::vector<Collider>& colliders, const WorldOptions& options,
-                                    const CudaSpace* space)
-{
-    const bool may_collide = contact_settings(scene).cloth_with_cloth;
-    std::vector<std::vector<SceneCloth>> members;
-    for (SceneCloth& cloth : cloths) {
-        if (members.empty() || !may_collide)
-            members.emplace_back();
-        members.back().push_back(std::move(cloth));
-    }
-    if (bodies.any())
-        members.resize(1); // one group of all cloths, if any
-    std::vector<ClothGroup> groups;
-    groups.reserve(members.size());
-    for (auto& group : members)
-        groups.emplace_back(scene, std::move(group), std::exchange(bodies, {}), colliders, options, space);
-    return groups;
 }
 
 } // namespace toile::scenes
