@@ -1,7 +1,8 @@
 #include "research/benchmarks/bar.h"
 
-#include <algorithm>
 #include <string>
+
+#include "research/paper_rule/kuhn_cut.h"
 
 namespace toile::research {
 
@@ -16,21 +17,15 @@ volume::TetMesh bar_of_tets(const Vec3& size, const std::array<int, 3>& cells)
             for (int i = 0; i <= cells[0]; ++i)
                 mesh.positions.emplace_back(size.x() * i / cells[0], size.y() * j / cells[1],
                                             size.z() * k / cells[2]);
+    const auto pieces = kuhn_cut<3>();
     for (int k = 0; k < cells[2]; ++k)
         for (int j = 0; j < cells[1]; ++j)
-            for (int i = 0; i < cells[0]; ++i) {
-                // A path along the axes, in any order, from the first corner to the last one.
-                std::array<int, 3> axes{0, 1, 2};
-                do {
-                    std::array<int, 3> at{i, j, k};
-                    volume::Tet tet{number(at)};
-                    for (size_t step = 0; step < 3; ++step) {
-                        ++at[size_t(axes[step])];
-                        tet[step + 1] = number(at);
-                    }
-                    mesh.tets.push_back(tet);
-                } while (std::next_permutation(axes.begin(), axes.end()));
-            }
+            for (int i = 0; i < cells[0]; ++i)
+                for (const auto& corners : pieces) {
+                    volume::Tet& tet = mesh.tets.emplace_back();
+                    for (size_t c = 0; c < 4; ++c)
+                        tet[c] = number({i + corners[c][0], j + corners[c][1], k + corners[c][2]});
+                }
     volume::orient(
         mesh, [](int tet) { return "tetrahedron " + std::to_string(tet); }, "bar");
     return mesh;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/compute/parallel.h"
 #include "core/linear/cholesky.h"
 #include "core/linear/inverse_columns.h"
@@ -20,7 +21,7 @@ constexpr double kMinDenominator = 1e-6;
 void require(bool is_usable, const std::string& what, double value, const std::string& range)
 {
     if (!is_usable)
-        throw InvalidInput("paper rule: " + what + " is " + std::to_string(value) + "; " + range + " needed");
+        throw InvalidInput("paper rule: " + what + " is " + short_text(value) + "; " + range + " needed");
 }
 
 void require_usable(const PaperRule::Settings& settings)

@@ -51,8 +51,9 @@ template <int Dim>
 NearField<Dim> near_field(const VoxelisedMesh<Dim>& mesh, int vertex, View<const double> u,
                           const RuleSettings& settings);
 
-/// Weights of the rule: u(i)^T b is taken for sum_k weight_k b_k over about 8 + 3 * 9 + 8 vertices of a
-/// surface, 8 + 4 * 27 + 8 of a solid.
+/// Weights of the rule: u(i)^T b is taken for sum_k weight_k b_k. With the default settings, which stack near
+/// and middle field, these are about 8 + 3 * 9 + 8 = 43 vertices of a surface, 8 + 4 * 27 + 8 = 124 of a
+/// solid; the other placements of NearMiddle have other numbers.
 ///
 ///   phi_k = u_k b_k / |Omega_k| at vertices, barycentric in between, zero beside the mesh       [eq. 9, 10]
 ///   near    A * integral of the Gaussian over the near box                                          [eq. 16]

@@ -1,5 +1,7 @@
 #include "research/paper_rule/voxelised_mesh.h"
 
+#include <algorithm>
+#include <functional>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -7,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "core/base/error.h"
+#include "research/paper_rule/kuhn_cut.h"
 
 namespace toile::research {
 
@@ -27,28 +30,30 @@ std::string text(const Point<Dim>& point)
     return stream.str();
 }
 
-/// Barycentric weights of the centres of cuts^Dim pieces of a simplex, all of the same volume: Kuhn's cut of
-/// the simplex cuts >= y_0 >= y_1 >= ... >= 0. A piece is a path along the axes, in any order, from one
-/// corner of a cube to the opposite one.
+/// Barycentric weights of the centres of cuts^Dim pieces of a simplex, all of the same volume: those of
+/// Kuhn's cut of cubes that are in the simplex cuts >= y_0 >= y_1 >= ... >= 0.
 template <int Dim>
 std::vector<typename VoxelisedMesh<Dim>::Weights> centers_of_pieces(int cuts)
 {
     std::vector<typename VoxelisedMesh<Dim>::Weights> centers;
     VoxelBox<Dim> cubes;
     cubes.last.fill(cuts - 1);
+    const auto pieces = kuhn_cut<Dim>();
     cubes.for_each([&](const Voxel<Dim>& cube) {
-        std::array<int, Dim> axes;
-        std::iota(axes.begin(), axes.end(), 0);
-        do {
+        for (const auto& corners : pieces) {
             Point<Dim> y;
-            for (int step = 0; step < Dim; ++step)
-                y[axes[step]] = (cube[axes[step]] + double(Dim - step) / (Dim + 1)) / cuts;
+            for (int axis = 0; axis < Dim; ++axis) {
+                const int sum =
+                    std::accumulate(corners.begin(), corners.end(), 0,
+                                    [axis](int part, const auto& corner) { return part + corner[axis]; });
+                y[axis] = (cube[axis] + double(sum) / (Dim + 1)) / cuts;
+            }
             if (!std::is_sorted(y.data(), y.data() + Dim, std::greater<>()))
                 continue;
             auto& weight = centers.emplace_back();
             for (int corner = 0; corner <= Dim; ++corner)
                 weight[corner] = (corner == 0 ? 1.0 : y[corner - 1]) - (corner == Dim ? 0.0 : y[corner]);
-        } while (std::next_permutation(axes.begin(), axes.end()));
+        }
     });
     return centers;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "collision/body/body_surfaces.h"
 #include "core/base/error.h"
 #include "core/base/number.h"
 #include "core/compute/parallel.h"
@@ -75,9 +76,21 @@ void CoreConstraint::bind(const Vec3& start, const collision::SurfacePoint& at, 
     rest_.push_back(linear.inverse() * (start - map.col(3)));
 }
 
+bool CoreConstraint::has_jumped(const std::vector<Collider>& colliders, double dt) const
+{
+    if (!colliders[collider_].moved())
+        return false;
+    const SkinnedCollider& body = *colliders[collider_].body().skinned();
+    for (int k = 0; k < int(rest_.size()); ++k)
+        if (!((skin().posed(k, body.bones_t1()) - skin().posed(k, body.bones_t0())).norm() <=
+              collision::BodySurfaces::kMaxSpeed * dt))
+            return true;
+    return false;
+}
+
 void CoreConstraint::follow(const std::vector<Collider>& colliders)
 {
-    const avatars::SkinView skin{rest_, first_, influences_};
+    const avatars::SkinView skin = this->skin();
     const View<const avatars::Affine> bones = colliders[collider_].body().skinned()->bones_t1();
     parallel_for(kCpu, "scenes/core", int(targets_.size()),
                  [&](int k) { targets_[k] = skin.posed(k, bones); });

@@ -23,6 +23,10 @@ public:
 
     const std::vector<int>& vertices() const { return vertices_; } ///< of the body, ascending
 
+    /// True if a vertex moves faster in the colliders' step of dt [s] than surfaces that carry cloth along
+    /// (collision::BodySurfaces::kMaxSpeed).
+    bool has_jumped(const std::vector<Collider>& colliders, double dt) const;
+
     /// Advances the targets to the time of the colliders.
     void follow(const std::vector<Collider>& colliders);
 
@@ -30,6 +34,7 @@ public:
     const Vec3& target(int k) const { return targets_[k]; }
 
 private:
+    avatars::SkinView skin() const { return {rest_, first_, influences_}; }
     void bind(const Vec3& start, const collision::SurfacePoint& at, const Triangle& corners,
               const SkinnedCollider& body, const std::string& location);
 

@@ -54,7 +54,7 @@ std::vector<SceneBody> make_bodies(const Scene& scene)
     std::vector<SceneBody> bodies;
     bodies.reserve(scene.avatars.size());
     for (const scene::Avatar& avatar : scene.avatars) {
-        if (moves_core(scene, avatar.name))
+        if (replacement_of(scene, avatar.name) != nullptr)
             continue;
         const LongWork::Part part = LongWork::item(bodies.size(), scene.avatars.size());
         bodies.emplace_back(avatar);

@@ -34,7 +34,8 @@ public:
     const std::vector<Triangle>& triangles() const { return avatar_.avatar().triangles(); }
     int body_vertex_count() const { return avatar_.avatar().vertex_count(); }
     const avatars::Avatar& avatar() const { return avatar_.avatar(); }
-    View<const avatars::Affine> bones_t1() const { return avatar_.bones_t1(); } ///< for avatar().skin()
+    View<const avatars::Affine> bones_t0() const { return avatar_.bones_t0(); } ///< for avatar().skin()
+    View<const avatars::Affine> bones_t1() const { return avatar_.bones_t1(); } ///< likewise
 
     const std::vector<Triangle>& contact_triangles() const
     {

@@ -409,13 +409,16 @@ void describe(V& v, SelectNearAvatar& n)
 template <typename V>
 void describe(V& v, Selection& s)
 {
-    v.one_of(s.by,
-             Alternative<std::vector<int>>{"vertices", "Indices into the cloth's mesh, counted from 0.",
-                                           between(0, 1e8)},
-             Alternative<SelectBox>{"box", "Vertices that start inside a box of the world."},
-             Alternative<std::vector<Vec3>>{
-                 "nearest", "For each point of the world the vertex nearest to it at the start.", kPosition},
-             Alternative<SelectNearAvatar>{"all_within", "Vertices that start near an avatar."});
+    v.one_of(
+        s.by,
+        Alternative<std::vector<int>>{"vertices",
+                                      "Indices into the mesh of the cloth or soft body, counted from 0; of a "
+                                      "soft body only vertices count that tetrahedra use.",
+                                      between(0, 1e8)},
+        Alternative<SelectBox>{"box", "Vertices that start inside a box of the world."},
+        Alternative<std::vector<Vec3>>{
+            "nearest", "For each point of the world the vertex nearest to it at the start.", kPosition},
+        Alternative<SelectNearAvatar>{"all_within", "Vertices that start near an avatar."});
 }
 
 template <typename V>

@@ -23,10 +23,12 @@ double metres_per(LengthUnit unit)
 
 namespace toile::scenes {
 
-bool moves_core(const Scene& scene, const std::string& avatar)
+const scene::SoftBody* replacement_of(const Scene& scene, const std::string& avatar)
 {
-    return std::any_of(scene.soft_bodies.begin(), scene.soft_bodies.end(),
-                       [&](const scene::SoftBody& body) { return body.core && body.core->avatar == avatar; });
+    const auto found =
+        std::find_if(scene.soft_bodies.begin(), scene.soft_bodies.end(),
+                     [&](const scene::SoftBody& body) { return body.core && body.core->avatar == avatar; });
+    return found == scene.soft_bodies.end() ? nullptr : &*found;
 }
 
 std::vector<std::string> surface_names(const Scene& scene)

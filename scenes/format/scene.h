@@ -485,8 +485,8 @@ struct Scene {
     }
 };
 
-/// True if the core of a soft body follows the avatar of this name, which the soft body then replaces.
-bool moves_core(const Scene& scene, const std::string& avatar);
+/// Soft body whose core follows the avatar of this name, which it replaces; null: none.
+const scene::SoftBody* replacement_of(const Scene& scene, const std::string& avatar);
 
 /// Names of the cloths, solids and soft bodies, then of the surfaces that soft bodies have for pictures and
 /// caches, in the order of World::surfaces().

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "collision/bvh/triangle_tree.h"
 #include "collision/geometry/distance.h"
 #include "core/base/error.h"
 #include "core/base/number.h"
@@ -50,50 +51,100 @@ double longest_edge(const Tet& tet, View<const Vec3> x)
     return longest;
 }
 
-struct Nearest {
-    int tet = -1;
-    double squared_distance = std::numeric_limits<double>::infinity(); ///< [m^2]
-};
+/// Largest factor of a corner farther away than the point [-], of the nearest tetrahedron outside which a
+/// vertex may be. A flat one has larger factors, so that the vertex would leap when a corner moves a little.
+constexpr double kMaxExtrapolation = 2.0;
 
-/// @param boxes  [tets] around them
-Nearest nearest_tet(const Vec3& p, const volume::TetMesh& mesh, View<const Bounds> boxes)
+/// How far p is beyond the faces, in heights of the tetrahedron [-]; 0 inside.
+double extrapolation(const Vec3& p, const Tet& tet, View<const Vec3> x)
 {
-    Nearest nearest;
-    for (int t = 0; t < mesh.tet_count() && nearest.squared_distance > 0.0; ++t) {
-        const Vec3 beside = (boxes[t].lower - p).cwiseMax(p - boxes[t].upper).cwiseMax(0.0);
-        if (beside.squaredNorm() >= nearest.squared_distance)
-            continue;
-        const double here = squared_distance(p, mesh.tets[size_t(t)], mesh.positions);
-        if (here < nearest.squared_distance)
-            nearest = {t, here};
-    }
-    return nearest;
+    return std::max(0.0, -weights_of(p, tet, x).minCoeff());
 }
+
+/// Finds tetrahedra around points, by their faces.
+class TetSearch {
+public:
+    explicit TetSearch(const volume::TetMesh& mesh) : mesh_(mesh)
+    {
+        for (const Tet& tet : mesh.tets)
+            for (size_t k = 0; k < 4; ++k)
+                faces_.emplace_back(tet[(k + 1) % 4], tet[(k + 2) % 4], tet[(k + 3) % 4]);
+        tree_.build(faces_, mesh.positions);
+    }
+
+    struct Nearest {
+        int tet = -1;
+        double squared_distance = std::numeric_limits<double>::infinity(); ///< [m^2]
+    };
+
+    /// The tetrahedron that contains p or is nearest to it; of several the first. A point inside has the
+    /// nearest face in common with it: other faces are behind its own.
+    Nearest nearest(const Vec3& p) const
+    {
+        Nearest nearest;
+        tree_.visit_nearest(p, std::numeric_limits<double>::infinity(), [&](int face) {
+            const int t = face / 4;
+            const double here = squared_distance(p, mesh_.tets[size_t(t)], mesh_.positions);
+            if (here < nearest.squared_distance || (here == nearest.squared_distance && t < nearest.tet))
+                nearest = {t, here};
+            const Triangle& f = faces_[size_t(face)];
+            const View<const Vec3> x = mesh_.positions;
+            return std::sqrt(collision::closest_on_triangle(p, x[f[0]], x[f[1]], x[f[2]]).distance2);
+        });
+        return nearest;
+    }
+
+    /// The tetrahedron that p moves with: the nearest one, unless that is too flat for a point outside; then
+    /// the one, no farther away than that one is long, with the least extrapolation.
+    int best(const Vec3& p, const Nearest& nearest) const
+    {
+        const View<const Vec3> x = mesh_.positions;
+        const Tet& tet = mesh_.tets[size_t(nearest.tet)];
+        double least = extrapolation(p, tet, x);
+        if (nearest.squared_distance == 0.0 || least <= kMaxExtrapolation)
+            return nearest.tet;
+        int best = nearest.tet;
+        const double radius = std::sqrt(nearest.squared_distance) + longest_edge(tet, x);
+        tree_.visit_within(p, radius, Vec3::Zero(), 1.0, [&](int face) {
+            const int t = face / 4;
+            const double here = extrapolation(p, mesh_.tets[size_t(t)], x);
+            if (here < least || (here == least && t < best)) {
+                least = here;
+                best = t;
+            }
+        });
+        return best;
+    }
+
+private:
+    const volume::TetMesh& mesh_;
+    std::vector<Triangle> faces_; ///< four of each tetrahedron
+    collision::TriangleTree tree_;
+};
 
 } // namespace
 
 EmbeddedSurface::EmbeddedSurface(View<const Vec3> points, const volume::TetMesh& mesh,
                                  const std::string& source)
 {
-    std::vector<Bounds> boxes(mesh.tets.size());
-    for (size_t t = 0; t < boxes.size(); ++t)
-        for (const int v : mesh.tets[t])
-            boxes[t].extend(mesh.positions[size_t(v)]);
-    std::vector<Nearest> nearest(size_t(points.size()));
-    parallel_for(kCpu, "scenes/embed", points.size(),
-                 [&](int v) { nearest[size_t(v)] = nearest_tet(points[v], mesh, boxes); });
+    const TetSearch search(mesh);
+    std::vector<TetSearch::Nearest> nearest(size_t(points.size()));
+    vertices_.resize(nearest.size());
+    parallel_for(kCpu, "scenes/embed", points.size(), [&](int v) {
+        nearest[size_t(v)] = search.nearest(points[v]);
+        const Tet& tet = mesh.tets[size_t(search.best(points[v], nearest[size_t(v)]))];
+        vertices_[size_t(v)] = {tet, weights_of(points[v], tet, mesh.positions)};
+    });
 
     for (int v = 0; v < points.size(); ++v) {
         const Vec3& p = points[v];
-        const Tet& tet = mesh.tets[size_t(nearest[size_t(v)].tet)];
         const double distance = std::sqrt(nearest[size_t(v)].squared_distance);
-        if (distance > longest_edge(tet, mesh.positions))
+        if (distance > longest_edge(mesh.tets[size_t(nearest[size_t(v)].tet)], mesh.positions))
             throw InvalidInput(source + ": vertex " + std::to_string(v) + " at (" + short_text(p.x()) + ", " +
                                short_text(p.y()) + ", " + short_text(p.z()) + ") m is " +
                                short_text(distance) +
                                " m outside the soft body, farther than its tetrahedra are long; give it the "
                                "axes and unit of the body's file, or more tetrahedra around it");
-        vertices_.push_back({tet, weights_of(p, tet, mesh.positions)});
     }
 }
 

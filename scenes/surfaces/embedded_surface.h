@@ -8,10 +8,11 @@
 namespace toile::scenes {
 
 /// A surface that moves with a mesh of tetrahedra: every vertex keeps its barycentric coordinates in the
-/// tetrahedron that contains it or, outside all, in the nearest one.
+/// tetrahedron that contains it or, outside all, in the nearest one. Where that is so flat that a coordinate
+/// is below -2, it is the tetrahedron nearby whose lowest coordinate is the highest.
 class EmbeddedSurface {
 public:
-    /// O(points * tetrahedra).
+    /// O((points + tetrahedra) log tetrahedra).
     /// @param points  [vertices of the surface] where `mesh` is [m]
     /// @param source  named in errors
     /// @throws InvalidInput for a vertex farther outside than the longest edge of the nearest tetrahedron

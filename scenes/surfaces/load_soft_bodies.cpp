@@ -17,9 +17,15 @@ namespace toile::scenes {
 
 namespace {
 
+/// A body in its own axes [m].
+struct RestMesh {
+    volume::TetMesh tets;
+    std::vector<Triangle> surface;
+    std::vector<int> of_file; ///< see LoadedSoftBody
+};
+
 /// Numbers the vertices of the surface first; both parts keep their order.
-/// @return the surface's triangles
-std::vector<Triangle> put_surface_first(volume::TetMesh& mesh)
+RestMesh with_surface_first(volume::TetMesh mesh)
 {
     std::vector<Triangle> surface = volume::boundary_triangles(mesh.tets);
     std::vector<char> is_on_surface(mesh.positions.size(), 0);
@@ -42,14 +48,8 @@ std::vector<Triangle> put_surface_first(volume::TetMesh& mesh)
     for (Triangle& face : surface)
         for (int& v : face)
             v = number[v];
-    return surface;
+    return {std::move(mesh), std::move(surface), std::move(number)};
 }
-
-/// A body in its own axes [m].
-struct RestMesh {
-    volume::TetMesh tets;
-    std::vector<Triangle> surface;
-};
 
 std::string source_of(const scene::SoftBody& body)
 {
@@ -112,7 +112,7 @@ RenderSurface render_surface(const scene::SoftBody& body, double scale, const vo
 
 LoadedSoftBody placed(const scene::SoftBody& body, const RestMesh& rest)
 {
-    LoadedSoftBody loaded{source_of(body), {}, rest.tets, {}, {}};
+    LoadedSoftBody loaded{source_of(body), {}, rest.tets, {}, rest.of_file, {}};
     const Mat3 rotation = rotation_of(body.rotate_deg);
     for (const Vec3& p : rest.tets.positions)
         loaded.positions.push_back(placed(p, body, rotation));
@@ -141,11 +141,8 @@ std::vector<LoadedSoftBody> load_soft_bodies(const std::vector<scene::SoftBody>&
     for (const scene::SoftBody& body : bodies) {
         const double scale = body.scale * scene::metres_per(body.unit);
         const auto [entry, is_new] = known.try_emplace({source_of(body), scale, body.cell.value_or(0.0)});
-        if (is_new) {
-            RestMesh& rest = entry->second;
-            rest.tets = tets_of(body, scale, colliders);
-            rest.surface = put_surface_first(rest.tets);
-        }
+        if (is_new)
+            entry->second = with_surface_first(tets_of(body, scale, colliders));
         loaded.push_back(placed(body, entry->second));
         if (body.render)
             loaded.back().render = render_surface(body, scale, entry->second.tets);

@@ -24,6 +24,7 @@ struct LoadedSoftBody {
     ClothState surface;          ///< as placed; its vertices are the first of the mesh
     volume::TetMesh rest;        ///< [m] in its own axes: equal for bodies of one file and scale
     std::vector<Vec3> positions; ///< [vertices] as placed [m]
+    std::vector<int> of_file;    ///< [vertices] their numbers, by those among the file's that tetrahedra use
     std::optional<RenderSurface> render;
 };
 

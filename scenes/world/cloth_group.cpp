@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "collision/check/find_crossings.h"
-#include "core/base/long_work.h"
 #include "core/compute/parallel.h"
 #include "garment/energy/air/cuda/loads.h"
-#include "scenes/world/contact_setup.h"
 
 namespace toile::scenes {
 
@@ -130,7 +128,8 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
         report.steps = 1;
         return report;
     }
-    has_jump_ = contact_ && contact_->have_bodies_jumped(dt);
+    const bool have_cores_jumped = soft_bodies_ && soft_bodies_->have_cores_jumped(colliders, dt);
+    has_jump_ = contact_ && (contact_->have_bodies_jumped(dt) || have_cores_jumped);
     may_cross_ = may_cross_ || has_jump_;
     if (may_cross_ && contact_ && contact_->keeps_cloth_apart())
         mark_crossings();
@@ -148,7 +147,8 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
     begin_solids(dt);
     StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), limits_.get());
     may_cross_ =
-        may_cross_ || (contact_ && (contact_->stuck_count() > 0 || contact_->let_through_count() > 0));
+        may_cross_ || (contact_ && (contact_->stuck_count() > 0 || contact_->let_through_count() > 0 ||
+                                    have_cores_jumped)); // flesh has gone where nobody looked
     if (report.status != StepReport::Status::NonFinite)
         end_solids();
     if (contact_) {
@@ -184,10 +184,10 @@ void ClothGroup::judge(double t_t1, const std::vector<Collider>& colliders, Step
                 place_of(contact_->stuck_count() > 0 ? contact_->first_stuck() : first_crossing_, colliders);
             raise(StepReport::Status::Stuck);
         }
-        if (has_jump_) {
-            report.stuck.merge({1, "a body moves faster than 50 m/s and may have left cloth behind"});
-            raise(StepReport::Status::Stuck);
-        }
+    }
+    if (has_jump_) {
+        report.stuck.merge({1, "a body moves faster than 50 m/s and may have left cloth behind"});
+        raise(StepReport::Status::Stuck);
     }
     find_strained(t_t1, colliders, report);
     find_displaced(colliders, report);
@@ -479,38 +479,6 @@ bool ClothGroup::is_asleep(double t_t1, const std::vector<Collider>& colliders)
         still_.clear();
     }
     return sleep_.enabled && still_time_ > kSleepDelay;
-}
-
-std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Collider>& colliders,
-                                    const WorldOptions& options)
-{
-    std::vector<SceneCloth> cloths;
-    for (const scene::Cloth& cloth : scene.cloths) {
-        const LongWork::Part part = LongWork::item(cloths.size(), scene.cloths.size());
-        cloths.emplace_back(scene, cloth, colliders, options);
-        LongWork::update(1.0);
-    }
-    return cloths;
-}
-
-std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths, SceneBodies bodies,
-                                    const std::vector<Collider>& colliders, const WorldOptions& options,
-                                    const CudaSpace* space)
-{
-    const bool may_collide = contact_settings(scene).cloth_with_cloth;
-    std::vector<std::vector<SceneCloth>> members;
-    for (SceneCloth& cloth : cloths) {
-        if (members.empty() || !may_collide)
-            members.emplace_back();
-        members.back().push_back(std::move(cloth));
-    }
-    if (bodies.any())
-        members.resize(1); // one group of all cloths, if any
-    std::vector<ClothGroup> groups;
-    groups.reserve(members.size());
-    for (auto& group : members)
-        groups.emplace_back(scene, std::move(group), std::exchange(bodies, {}), colliders, options, space);
-    return groups;
 }
 
 } // namespace toile::scenes

@@ -128,7 +128,7 @@ private:
     std::vector<Triangle> triangles_; ///< of all cloths, then of all solids
     bool may_cross_ = true;           ///< cloth is known to cross cloth or bodies, or has been placed
     bool may_cross_cloth_ = true;     ///< false: the next look finds no cloth that crosses cloth
-    bool has_jump_ = false;           ///< a body jumps in this step
+    bool has_jump_ = false;           ///< a body or core jumps in this step
     bool has_cloth_inside_ = false;   ///< cloth was inside a body when last looked at
     int crossing_bodies_ = 0;         ///< triangles of cloth that crossed bodies when last looked at
     int first_crossing_ = -1;         ///< a vertex of the first of them

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <utility>
 
+#include "core/base/long_work.h"
 #include "core/linear/block_diagonal_solver.h"
 #include "core/pd/cuda/body.h"
 #include "core/pd/energy/sliced_energy.h"
@@ -221,6 +223,38 @@ ClothGroup::make_contact(const Scene& scene, const std::vector<Collider>& collid
     return std::make_unique<collision::Contact>(
         triangles_, surfaces(), contact_cloths(scene, cloths_, soft_bodies_.get(), solids_.get(), in_contact),
         contact_colliders(in_contact), settings, space);
+}
+
+std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Collider>& colliders,
+                                    const WorldOptions& options)
+{
+    std::vector<SceneCloth> cloths;
+    for (const scene::Cloth& cloth : scene.cloths) {
+        const LongWork::Part part = LongWork::item(cloths.size(), scene.cloths.size());
+        cloths.emplace_back(scene, cloth, colliders, options);
+        LongWork::update(1.0);
+    }
+    return cloths;
+}
+
+std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths, SceneBodies bodies,
+                                    const std::vector<Collider>& colliders, const WorldOptions& options,
+                                    const CudaSpace* space)
+{
+    const bool may_collide = contact_settings(scene).cloth_with_cloth;
+    std::vector<std::vector<SceneCloth>> members;
+    for (SceneCloth& cloth : cloths) {
+        if (members.empty() || !may_collide)
+            members.emplace_back();
+        members.back().push_back(std::move(cloth));
+    }
+    if (bodies.any())
+        members.resize(1); // one group of all cloths, if any
+    std::vector<ClothGroup> groups;
+    groups.reserve(members.size());
+    for (auto& group : members)
+        groups.emplace_back(scene, std::move(group), std::exchange(bodies, {}), colliders, options, space);
+    return groups;
 }
 
 } // namespace toile::scenes

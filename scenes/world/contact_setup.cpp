@@ -120,7 +120,7 @@ std::vector<const Collider*> colliders_in_contact(const Scene& scene, const std:
 {
     std::vector<const Collider*> result;
     for (const Collider& collider : colliders)
-        if (!moves_core(scene, collider.name()))
+        if (replacement_of(scene, collider.name()) == nullptr)
             result.push_back(&collider);
     return result;
 }

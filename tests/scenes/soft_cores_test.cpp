@@ -91,6 +91,24 @@ TEST_F(SoftCores, MoveWithTheirAvatarAndTheRestLags)
     EXPECT_GT(lag, 0.003);
 }
 
+TEST_F(SoftCores, SayThatTheyHaveJumpedFromUnderCloth)
+{
+    const auto worst = [&](const std::string& time) {
+        World world(
+            block_scene(R"("frames": 6, "cloths": [{"name": "blanket", "translate": [0.05, 0.11, 0.05],
+            "rectangle": {"size": [0.2, 0.2], "resolution": 0.03}, "fabric": "silk"}])",
+                        R"([{"time": 0.1}, {"time": )" + time + R"(, "translate": [0, -0.5, 0]}])"));
+        StepReport report;
+        for (int frame = 1; frame < 6; ++frame)
+            report.merge(world.advance_frame());
+        return report;
+    };
+    const StepReport jump = worst("0.1002");
+    EXPECT_EQ(jump.status, StepReport::Status::Stuck);
+    EXPECT_NE(jump.stuck.place.find("faster than 50 m/s"), std::string::npos) << jump.stuck.place;
+    EXPECT_LT(worst("0.15").status, StepReport::Status::Stuck);
+}
+
 TEST_F(SoftCores, ReplaceTheirAvatarInContact)
 {
     // The blanket hangs over the edges of the block, past the top of the wider box.

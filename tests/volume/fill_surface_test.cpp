@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/mesh/solid_moments.h"
+#include "tests/support/refusal.h"
 #include "tests/volume/blocks.h"
 #include "volume/mesh/quality.h"
 
@@ -70,6 +71,15 @@ TEST(FillSurface, RefusesSurfacesWithoutAnInside)
         crossing.triangles.push_back(crossing.triangles[t] + Triangle::Constant(count));
     EXPECT_THROW(fill_surface(crossing, 0.03, "crossing"), InvalidInput);
     EXPECT_THROW(fill_surface(ball(0.1), 1e-5, "fine"), InvalidInput);
+}
+
+TEST(FillSurface, RefusesCellsThatAreLargerThanTheSurface)
+{
+    const TriangleMesh box = boundary_surface(make_block({0.1, 0.2, 0.1}, {1, 1, 1}).mesh);
+    EXPECT_EQ(refusal([&] { (void)fill_surface(box, 0.2, "box"); }), "");
+    EXPECT_EQ(refusal([&] { (void)fill_surface(box, 0.3, "box"); }),
+              "box: cells of 0.3 m are larger than the surface, which is 0.2 m long; four across it are of "
+              "0.05 m");
 }
 
 } // namespace

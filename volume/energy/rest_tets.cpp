@@ -59,10 +59,8 @@ std::vector<double> RestTets::vertex_volumes() const
     return of_vertex;
 }
 
-RestTets rest_tets(const TetMesh& mesh, const std::string& source)
+void require_no_slivers(const TetMesh& mesh, const std::string& source)
 {
-    RestTets rest;
-    rest.tets = mesh.tets;
     for (int t = 0; t < mesh.tet_count(); ++t) {
         const double ratio = height_ratio(mesh.tets[t], mesh.positions);
         if (!(ratio >= kMinHeightRatio)) {
@@ -73,6 +71,15 @@ RestTets rest_tets(const TetMesh& mesh, const std::string& source)
                 ratio, kMinHeightRatio);
             throw InvalidInput(source + text + "; mesh the body again");
         }
+    }
+}
+
+RestTets rest_tets(const TetMesh& mesh, const std::string& source)
+{
+    require_no_slivers(mesh, source);
+    RestTets rest;
+    rest.tets = mesh.tets;
+    for (int t = 0; t < mesh.tet_count(); ++t) {
         rest.edges_inv.push_back(edges_of(mesh.tets[t], mesh.positions).inverse());
         rest.volumes.push_back(volume_of(mesh.tets[t], mesh.positions));
     }

@@ -24,6 +24,9 @@ struct RestTets {
 
 /// @throws InvalidInput naming `source` and the first tetrahedron whose height is below kMinHeightRatio of
 ///         its longest edge
+void require_no_slivers(const TetMesh& mesh, const std::string& source);
+
+/// @throws InvalidInput as require_no_slivers()
 RestTets rest_tets(const TetMesh& mesh, const std::string& source);
 
 } // namespace toile::volume

@@ -49,6 +49,12 @@ void require_fillable(const TriangleMesh& surface, double cell, const std::strin
         throw InvalidInput(source + ": cells of " + short_text(cell) + " m make about " + short_text(tets) +
                            " tetrahedra, and at most " + short_text(kMaxTets) + " are made; choose " +
                            short_text(std::cbrt(volume / (kRegularVolume * kMaxTets))) + " m or more");
+    const Bounds box = bounds(surface.positions);
+    const double length = (box.upper - box.lower).maxCoeff();
+    if (cell > length)
+        throw InvalidInput(source + ": cells of " + short_text(cell) +
+                           " m are larger than the surface, which is " + short_text(length) +
+                           " m long; four across it are of " + short_text(0.25 * length) + " m");
 }
 
 Polyhedron polyhedron_of(const TriangleMesh& surface, const std::string& source)

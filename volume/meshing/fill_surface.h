@@ -16,8 +16,7 @@ inline constexpr double kMaxTets = 5e6;
 /// @param surface  [m]
 /// @param cell     length of edges [m]
 /// @throws InvalidInput naming `source` for a surface that is not closed, inside out or crosses itself, and
-/// for
-///         a cell that would need more than kMaxTets or leaves nothing
+///         for a cell that would need more than kMaxTets, is longer than the surface or leaves nothing
 TetMesh fill_surface(const TriangleMesh& surface, double cell, const std::string& source);
 
 } // namespace toile::volume

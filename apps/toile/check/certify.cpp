@@ -82,6 +82,7 @@ struct MeasuredCloth {
     int first_vertex, first_triangle;                      ///< in the arrays of all cloths
     std::vector<collision::PenetrationMeter::Sides> sides; ///< [avatars]
     std::optional<size_t> soft_body;                       ///< none: a cloth or solid
+    double rest_volume = 0.0;                              ///< [m^3] of a soft body
 };
 
 /// Number of a soft body; none: the name is of a cloth or solid.
@@ -146,6 +147,8 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
                            int(triangles_.size()),
                            {},
                            soft_body_named(scene, cloth.name)});
+        if (cloths_.back().soft_body)
+            cloths_.back().rest_volume = volume_in(cloth.rest.positions, cloth.triangles);
         for (const Triangle& t : cloth.triangles)
             triangles_.push_back(t + Triangle::Constant(int(rest.size())));
         rest.insert(rest.end(), cloth.rest.positions.begin(), cloth.rest.positions.end());
@@ -261,10 +264,8 @@ void Examiner::measure_volumes(FrameFindings& found) const
     for (const MeasuredCloth& cloth : cloths_) {
         if (!cloth.soft_body)
             continue;
-        const View<const Vec3> rest = cloth.state.rest.positions;
-        const View<const Vec3> x(x_.data() + cloth.first_vertex, rest.size());
-        found.volumes[*cloth.soft_body] =
-            volume_in(x, cloth.state.triangles) / volume_in(rest, cloth.state.triangles);
+        const View<const Vec3> x(x_.data() + cloth.first_vertex, int(cloth.state.rest.positions.size()));
+        found.volumes[*cloth.soft_body] = volume_in(x, cloth.state.triangles) / cloth.rest_volume;
     }
 }
 

@@ -94,7 +94,7 @@ public:
         trace(
             curve, kIterations, seconds_,
             [&](int iterations) {
-                (void)Pcg().solve(multiply, precondition, g, z, {0.0, iterations, true});
+                return Pcg().solve(multiply, precondition, g, z, {0.0, iterations, true}).iterations;
             },
             [&](Curve::Point& point) {
                 multiply(z, r);

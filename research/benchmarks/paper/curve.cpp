@@ -43,13 +43,12 @@ std::string fastest_to(double error, View<const Curve> curves)
 
 } // namespace
 
-void trace(Curve& curve, View<const int> iterations, double seconds, const std::function<void(int)>& solve,
+void trace(Curve& curve, View<const int> iterations, double seconds, const std::function<int(int)>& solve,
            const std::function<void(Curve::Point&)>& judge)
 {
     for (const int count : iterations) {
         Curve::Point& point = curve.points.emplace_back();
-        point.iterations = count;
-        point.ms = best_ms(seconds, [&] { solve(count); });
+        point.ms = best_ms(seconds, [&] { point.iterations = solve(count); });
         judge(point);
         point.residual = finite_or_infinite(point.residual);
         point.error = finite_or_infinite(point.error);
@@ -81,7 +80,7 @@ std::string markdown_of(const std::vector<Curve>& curves)
                 first->problem,
                 first->method,
                 format("%.0f", first->setup_ms),
-                format("%.3g", last.ms / last.iterations),
+                last.iterations == 0 ? "-" : format("%.3g", last.ms / last.iterations),
                 residual_and_error(first->points.front())};
         for (const char* const loop : kLoops) {
             const auto curve = std::find_if(first, end, [&](const Curve& c) { return c.loop == loop; });

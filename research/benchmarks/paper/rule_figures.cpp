@@ -37,14 +37,14 @@ public:
     }
 
     /// Iterates from x = 0.
-    void solve(const GlobalSolver& A, Loop loop, int iterations, std::vector<Vec3>& x)
+    /// @return iterations made: fewer if there is no direction
+    int solve(const GlobalSolver& A, Loop loop, int iterations, std::vector<Vec3>& x)
     {
         x.assign(b_.size(), Vec3::Zero());
         if (loop == Loop::Pcg) {
             const auto times_H = [&](View<const Vec3> p, View<Vec3> out) { multiply(p, out); };
             const auto times_A = [&](View<const Vec3> r, View<Vec3> z) { A.solve(r, z); };
-            (void)Pcg().solve(times_H, times_A, b_, x, {0.0, iterations, true});
-            return;
+            return Pcg().solve(times_H, times_A, b_, x, {0.0, iterations, true}).iterations;
         }
         std::vector<Vec3> r = b_, z(b_.size());
         for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -52,11 +52,12 @@ public:
             multiply(z, product_);
             const double curvature = dot(z, product_);
             if (!(curvature > 0.0))
-                break; // no direction
+                return iteration;
             const double length = loop == Loop::LineSearch ? dot(z, r) / curvature : 1.0;
             axpy(length, z, x);
             axpy(-length, product_, r);
         }
+        return iterations;
     }
 
     void judge(const std::vector<Vec3>& x, Curve::Point& point)
@@ -152,7 +153,9 @@ void add_curves(const Problem& problem, const System& system,
             curve.points.clear();
             trace(
                 curve, kIterations, seconds,
-                [&, &step = step, loop = loop](int iterations) { step.solve(solver, loop, iterations, x); },
+                [&, &step = step, loop = loop](int iterations) {
+                    return step.solve(solver, loop, iterations, x);
+                },
                 [&, &step = step](Curve::Point& point) { step.judge(x, point); });
             curves.push_back(curve);
         }

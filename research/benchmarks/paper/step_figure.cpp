@@ -73,14 +73,14 @@ void add_curves(const Problem& problem, const System& system, const SampledStep&
         axpy(-1.0, step.minimiser, e);
         return std::sqrt(dot(e, e));
     };
-    const auto add = [&](const char* loop, const std::function<void(int)>& run) {
+    const auto add = [&](const char* loop, const std::function<int(int)>& run) {
         curve.loop = loop;
         curve.points.clear();
         trace(
             curve, kIterations, seconds,
             [&](int iterations) {
                 x = step.prediction;
-                run(iterations);
+                return run(iterations);
             },
             [&](Curve::Point& point) {
                 objective.evaluate(x, gradient);
@@ -89,11 +89,14 @@ void add_curves(const Problem& problem, const System& system, const SampledStep&
             });
         curves.push_back(curve);
     };
-    add("plain", [&](int iterations) { iterate(objective, iterations, x); });
+    add("plain", [&](int iterations) {
+        iterate(objective, iterations, x);
+        return iterations;
+    });
     for (const auto& [method, loop] :
          {std::pair(OuterMethod::LocalGlobal, "line search"), std::pair(OuterMethod::Lbfgs, "l-bfgs")})
         add(loop, [&, method = method](int iterations) {
-            (void)make_outer_loop(method, kHistory)->minimise(objective, x, {0.0, iterations});
+            return make_outer_loop(method, kHistory)->minimise(objective, x, {0.0, iterations}).iterations;
         });
 }
 

@@ -1,10 +1,13 @@
 #include "research/methods/jgs2/jgs2.h"
 
+#include <string>
+
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/compute/parallel.h"
 #include "core/linear/cholesky.h"
 
@@ -26,6 +29,12 @@ Mat3 rotation_of(const Mat3& F)
 void Jgs2::tabulate(Hessian& hessian)
 {
     hessian.linearise(rest_, Definiteness::Projected);
+    const HessianParts parts = hessian.parts();
+    if (parts.inertia.size() != int(rest_.size()))
+        throw InvalidInput("jgs2: " + std::to_string(rest_.size()) + " rest positions for " +
+                           std::to_string(parts.inertia.size()) + " vertices");
+    inertia_.assign(parts.inertia.begin(), parts.inertia.end());
+    fixed_.assign(parts.fixed.begin(), parts.fixed.end());
     const SparseMatrix K = hessian.matrix();
     const Cholesky cholesky(K);
     const int n = int(rest_.size());
@@ -49,6 +58,24 @@ void Jgs2::tabulate(Hessian& hessian)
     }
 }
 
+void Jgs2::require_as_tabulated(const HessianParts& parts) const
+{
+    const auto refuse = [](const std::string& what) {
+        throw InvalidInput("jgs2: " + what + "; make one object for each step length and set of fixed ones");
+    };
+    if (parts.inertia.size() != int(inertia_.size()))
+        refuse("there are " + std::to_string(parts.inertia.size()) +
+               " vertices, and the subspaces were made with " + std::to_string(inertia_.size()));
+    for (int v = 0; v < parts.inertia.size(); ++v) {
+        if ((parts.fixed[v] != 0) != (fixed_[size_t(v)] != 0))
+            refuse("vertex " + std::to_string(v) + (parts.fixed[v] != 0 ? " is" : " is not") +
+                   " fixed, and the subspaces were made with the opposite");
+        if (parts.inertia[v] != inertia_[size_t(v)])
+            refuse("vertex " + std::to_string(v) + " has the inertia " + short_text(parts.inertia[v]) +
+                   " N/m, and the subspaces were made with " + short_text(inertia_[size_t(v)]) + " N/m");
+    }
+}
+
 std::vector<Mat3> Jgs2::rotations(View<const Vec3> x) const
 {
     std::vector<Mat3> R(rest_.size());
@@ -69,6 +96,7 @@ void Jgs2::find_direction(Objective& objective, const Here& here, View<Vec3> dir
     if (subspace_.empty())
         tabulate(*hessian);
     hessian->linearise(here.x, Definiteness::Projected);
+    require_as_tabulated(hessian->parts());
     const SparseMatrix K = hessian->matrix();
     const std::vector<Mat3> R = rotations(here.x);
     const Eigen::Map<const Eigen::VectorXd> g(here.gradient.data()->data(), 3 * here.gradient.size());

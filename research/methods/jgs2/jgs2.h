@@ -31,13 +31,18 @@ protected:
 
     /// The first call tabulates the subspaces: one object serves one step length and one set of fixed
     /// vertices.
+    /// @throws InvalidInput for another number or inertia of vertices or other fixed ones, and an objective
+    ///         without second derivatives
     void find_direction(Objective& objective, const Here& here, View<Vec3> direction) override;
 
 private:
     void tabulate(Hessian& hessian);
+    void require_as_tabulated(const HessianParts& parts) const;
     std::vector<Mat3> rotations(View<const Vec3> x) const;
 
     std::vector<Vec3> rest_;
+    std::vector<double> inertia_;              ///< [vertices] when tabulated [N/m]
+    std::vector<unsigned char> fixed_;         ///< [vertices] likewise
     std::vector<std::vector<int>> neighbours_; ///< [vertices]
     std::vector<Eigen::MatrixX3d> subspace_;   ///< [vertices] u_i, [3 vertices x 3]
 };

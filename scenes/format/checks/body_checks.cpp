@@ -137,12 +137,4 @@ void check_soft_bodies(const Document& document, const scenes::Scene& scene)
         check_contact_of_bodies(document, scene, "soft bodies");
 }
 
-const SoftBody* replacement_of(const scenes::Scene& scene, const std::string& avatar)
-{
-    const auto found =
-        std::find_if(scene.soft_bodies.begin(), scene.soft_bodies.end(),
-                     [&](const SoftBody& body) { return body.core && body.core->avatar == avatar; });
-    return found == scene.soft_bodies.end() ? nullptr : &*found;
-}
-
 } // namespace toile::scene_format

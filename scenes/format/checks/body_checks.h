@@ -12,7 +12,4 @@ void check_solids(const Document& document, const scenes::Scene& scene);
 /// Likewise soft bodies and the avatars that their cores follow.
 void check_soft_bodies(const Document& document, const scenes::Scene& scene);
 
-/// Soft body whose core follows the avatar of this name, which it replaces; null: none.
-const scene::SoftBody* replacement_of(const scenes::Scene& scene, const std::string& avatar);
-
 } // namespace toile::scene_format

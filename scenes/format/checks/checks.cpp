@@ -385,10 +385,14 @@ void check_attachments(const Document& document, const scenes::Scene& scene)
         const std::string key_path = below("attachments", i);
         require_known(document, below(key_path, "cloth"), kind, attachment.cloth, attached);
         check_selection(document, below(key_path, "select"), attachment.select, avatars);
-        if (contains(names_of(scene.soft_bodies), attachment.cloth) &&
-            std::holds_alternative<std::vector<int>>(attachment.select.by))
+        const bool is_filled =
+            std::any_of(scene.soft_bodies.begin(), scene.soft_bodies.end(), [&](const SoftBody& body) {
+                return body.name == attachment.cloth && body.cell.has_value();
+            });
+        if (is_filled && std::holds_alternative<std::vector<int>>(attachment.select.by))
             document.refuse(below(below(key_path, "select"), "vertices"),
-                            "a soft body is not selected by numbers; use box, nearest or all_within");
+                            "the tetrahedra that fill " + as_written(attachment.cloth) +
+                                " have no numbers; use box, nearest or all_within");
         require_known(document, below(key_path, "to"), "avatar", attachment.to, targets);
         if (!attachment.keyframes.empty() && attachment.to != kFixed)
             document.refuse(below(key_path, "keyframes"),
@@ -423,7 +427,7 @@ void check_contact(const Document& document, const scenes::Scene& scene)
             document.refuse(key_path, std::to_string(pairs[i].between.size()) + " names; give exactly two");
         for (const std::string& name : pairs[i].between) {
             require_known(document, key_path, "fabric in use, avatar, solid or soft body", name, known);
-            if (const SoftBody* body = replacement_of(scene, name))
+            if (const SoftBody* body = scenes::replacement_of(scene, name))
                 document.refuse(key_path, as_written(name) + " is replaced in contact by soft body " +
                                               as_written(body->name) + "; name that");
         }

@@ -7,7 +7,6 @@
 
 #include "core/base/extension.h"
 #include "export/cache_format.h"
-#include "scenes/format/checks/body_checks.h"
 #include "scenes/format/field.h"
 #include "scenes/format/names.h"
 
@@ -27,6 +26,13 @@ void check_export_file(const Document& document, const std::string& at_file,
                         as_written(file.string()) + " leaves the output folder; give a path inside it");
 }
 
+/// True if "all" stands for all surfaces rather than for one of that name.
+/// @param known  names of surfaces
+bool exports_all(const Export& entry, const std::vector<std::string>& known)
+{
+    return entry.cloths == std::vector<std::string>{"all"} && !contains(known, "all");
+}
+
 /// Checks which surfaces an entry writes, and that its format has room for them.
 void check_exported_cloths(const Document& document, const std::string& key_path, const Export& entry,
                            const scenes::Scene& scene)
@@ -34,7 +40,7 @@ void check_exported_cloths(const Document& document, const std::string& key_path
     const std::vector<std::string> known = scenes::surface_names(scene);
     const bool is_of_cloths = known.size() == scene.cloths.size();
     const char* const kind = is_of_cloths ? "cloth" : "surface";
-    const bool is_all = entry.cloths == std::vector<std::string>{"all"} && !contains(known, "all");
+    const bool is_all = exports_all(entry, known);
     std::set<std::string> seen;
     for (const std::string& name : entry.cloths) {
         if (!is_all)
@@ -83,7 +89,7 @@ void check_gap(const Document& document, const std::string& at, const scenes::Sc
     for (const Avatar& avatar : scene.avatars) {
         if (std::holds_alternative<Plane>(avatar.shape))
             continue;
-        const SoftBody* body = replacement_of(scene, avatar.name);
+        const SoftBody* body = scenes::replacement_of(scene, avatar.name);
         if (body == nullptr)
             return;
         replaced = as_written(avatar.name) + " is replaced by soft body " + as_written(body->name);
@@ -109,10 +115,13 @@ void check_export_attributes(const Document& document, const std::string& key_pa
             document.refuse(at, as_written(word_of(*attribute)) + " is there twice; name it once");
     if (entry.stores(ExportAttribute::Gap))
         check_gap(document, at, scene);
-    const auto is_solid = [&](const std::string& name) { return contains(names_of(scene.solids), name); };
-    if (scene.cloths.empty() ||
-        (!entry.cloths.empty() && std::all_of(entry.cloths.begin(), entry.cloths.end(), is_solid)))
-        document.refuse(at, "are of cloths, and the entry writes solids; leave them out");
+    const std::vector<std::string> cloths = names_of(scene.cloths);
+    const bool is_all = entry.cloths.empty() || exports_all(entry, scenes::surface_names(scene));
+    if (cloths.empty() ||
+        (!is_all && std::none_of(entry.cloths.begin(), entry.cloths.end(),
+                                 [&](const std::string& name) { return contains(cloths, name); })))
+        document.refuse(at, "are of cloths, and the entry writes none; leave them out" +
+                                std::string(cloths.empty() ? "" : ", or add a cloth to \"cloth\""));
 }
 
 } // namespace

@@ -26,7 +26,7 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
     int next_surface = first_surface, next_inner = first_inner_;
     for (size_t i = 0; i < loaded.size(); ++i) {
         const scene::SoftBody& settings = scene.soft_bodies[i];
-        rest_tets(loaded[i].rest, loaded[i].source); // checks it, with the numbers of its own
+        volume::require_no_slivers(loaded[i].rest, loaded[i].source); // with the numbers of its own
         Body& body = bodies_.emplace_back();
         body.first_surface = next_surface;
         body.first_inner = next_inner;
@@ -47,7 +47,7 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
             scene.source.string() + ": soft_bodies[" + std::to_string(i) + "].core";
         if (settings.core)
             body.core.emplace(*settings.core, body.positions, colliders, core_location);
-        add_attachments(scene, colliders, body);
+        add_attachments(scene, colliders, loaded[i].of_file, body);
         require_one_owner(body, core_location);
     }
     all.positions.resize(next_inner, Vec3::Zero());
@@ -59,14 +59,25 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
     add_springs();
 }
 
-void SceneSoftBodies::add_attachments(const Scene& scene, const std::vector<Collider>& colliders, Body& body)
+/// @param of_file  see LoadedSoftBody
+void SceneSoftBodies::add_attachments(const Scene& scene, const std::vector<Collider>& colliders,
+                                      View<const int> of_file, Body& body)
 {
     for (size_t i = 0; i < scene.attachments.size(); ++i) {
         const scene::Attachment& attachment = scene.attachments[i];
         if (attachment.cloth != body.surface.name)
             continue;
         const std::string location = attachment_location(scene, i);
-        std::vector<int> vertices = select_vertices(attachment.select, body.positions, colliders);
+        scene::Selection select = attachment.select;
+        if (auto* numbers = std::get_if<std::vector<int>>(&select.by))
+            for (int& v : *numbers) {
+                if (v >= of_file.size())
+                    throw InvalidInput(location + ".select.vertices: vertex " + std::to_string(v) +
+                                       " is out of range; \"" + body.surface.name + "\" has vertices 0 to " +
+                                       std::to_string(of_file.size() - 1));
+                v = of_file[v];
+            }
+        std::vector<int> vertices = select_vertices(select, body.positions, colliders);
         if (vertices.empty())
             throw InvalidInput(location + ": selects no vertex of \"" + body.surface.name +
                                "\"; move the selection to where the body starts");
@@ -196,6 +207,12 @@ void SceneSoftBodies::mark_fixed(double t_t1, View<unsigned char> fixed) const
                 for (const int v : attachment.vertices())
                     fixed[body.unknown(v)] = 1;
     }
+}
+
+bool SceneSoftBodies::have_cores_jumped(const std::vector<Collider>& colliders, double dt) const
+{
+    return std::any_of(bodies_.begin(), bodies_.end(),
+                       [&](const Body& body) { return body.core && body.core->has_jumped(colliders, dt); });
 }
 
 void SceneSoftBodies::update_targets(double t_t1, const std::vector<Collider>& colliders, View<Vec3> targets)

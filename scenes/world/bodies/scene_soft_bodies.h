@@ -61,6 +61,7 @@ public:
     void tie(const std::vector<Collider>& colliders);
     void mark_fixed(double t_t1, View<unsigned char> fixed) const;
     void update_targets(double t_t1, const std::vector<Collider>& colliders, View<Vec3> targets);
+    bool have_cores_jumped(const std::vector<Collider>& colliders, double dt) const; ///< see CoreConstraint
     void accelerate(double dt, View<const Vec3> v, View<Vec3> acceleration) const;
     void add_loads(garment::DeviceLoads& loads) const; ///< the same on a GPU
     bool is_disturbed(double t) const;
@@ -88,7 +89,8 @@ private:
             return {unknown(tet[0]), unknown(tet[1]), unknown(tet[2]), unknown(tet[3])};
         }
     };
-    void add_attachments(const Scene& scene, const std::vector<Collider>& colliders, Body& body);
+    void add_attachments(const Scene& scene, const std::vector<Collider>& colliders, View<const int> of_file,
+                         Body& body);
     static void require_one_owner(const Body& body, const std::string& core_location);
     void add_springs();
     static double mass(const Body& body);

@@ -134,7 +134,7 @@ TEST_F(AttributesOfExportsTest, AreOfCloths)
     EXPECT_EQ(solid.exit_code, 2);
     EXPECT_THAT(solid.errors,
                 HasSubstr("scene.json: export[0].attributes: are of cloths, and the entry writes "
-                          "solids; leave them out"));
+                          "none; leave them out, or add a cloth to \"cloth\""));
     EXPECT_FALSE(std::filesystem::exists(file("out")));
 }
 

@@ -42,6 +42,21 @@ TEST(PaperFigures, SolveTheGlobalStepByQuadratureAndNotByThePapersRule)
     EXPECT_LT(on_soft_bar("stacked (paper)"), 0.5 * on_soft_bar("subdivided"));
 }
 
+TEST(PaperFigures, TimeTheIterationsThatWereMade)
+{
+    Curve curve{7, "sheet", "broken", "plain", 0.0, {}};
+    const std::vector<int> asked{1, 10};
+    trace(
+        curve, asked, 0.0, [](int iterations) { return std::min(iterations, 2); }, [](Curve::Point&) {});
+    ASSERT_EQ(curve.points.size(), 2u);
+    EXPECT_EQ(curve.points[0].iterations, 1);
+    EXPECT_EQ(curve.points[1].iterations, 2);
+    curve.points[1].ms = 34.0;
+    EXPECT_NE(markdown_of({curve}).find(" 17 "), std::string::npos) << markdown_of({curve});
+    curve.points[1].iterations = 0;
+    EXPECT_EQ(markdown_of({curve}).find("inf"), std::string::npos) << "no iteration, no time for one";
+}
+
 TEST(PaperFigures, ConvergeWithContactOnlyBySymmetricPreconditioners)
 {
     const std::vector<Curve> curves = contact_curves({300});

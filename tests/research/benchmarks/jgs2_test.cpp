@@ -8,6 +8,7 @@
 #include "core/pd/step/step_objective.h"
 #include "research/benchmarks/solvers/problem.h"
 #include "research/methods/jgs2/jgs2.h"
+#include "tests/support/refusal.h"
 
 namespace toile::research::solvers {
 namespace {
@@ -66,6 +67,31 @@ TEST(Jgs2, ConvergesInFewerIterationsThanLocalGlobal)
         EXPECT_LT(error(Jgs2(problem.start.positions), 4), 0.25 * error(LocalGlobal(), 4));
         EXPECT_LT(error(Jgs2(problem.start.positions), 16), 1e-3);
     }
+}
+
+TEST(Jgs2, ServesOneStepLengthAndOneSetOfFixedVertices)
+{
+    const Problem problem = small("bar");
+    const SampledStep step = sample_steps(problem, 1, 1).front();
+    const std::unique_ptr<System> system = problem.make_system(std::make_unique<DirectSolver>());
+    Jgs2 jgs2(problem.start.positions);
+    const auto refusal_of = [&](double dt, const std::vector<unsigned char>& fixed) {
+        Problem other = problem;
+        other.dt = dt;
+        other.fixed = fixed;
+        system->prepare(dt, fixed);
+        StepObjective objective(*system, step_start(other, *system, step), nullptr);
+        std::vector<Vec3> x = step.prediction;
+        return test::refusal([&] { (void)jgs2.minimise(objective, x, {0.0, 1}); });
+    };
+    EXPECT_EQ(refusal_of(problem.dt, problem.fixed), "");
+    EXPECT_NE(refusal_of(0.5 * problem.dt, problem.fixed).find("jgs2: vertex 0 has the inertia "),
+              std::string::npos);
+    std::vector<unsigned char> fixed = problem.fixed;
+    fixed.back() = fixed.back() == 0 ? 1 : 0;
+    EXPECT_NE(refusal_of(problem.dt, fixed).find("jgs2: vertex " + std::to_string(fixed.size() - 1)),
+              std::string::npos);
+    EXPECT_EQ(refusal_of(problem.dt, problem.fixed), "");
 }
 
 } // namespace

@@ -257,14 +257,16 @@ TEST(PaperRule, NamesASettingOutOfRange)
         return message_of([&] { PaperRule rule(sheet.uv, sheet.triangles, settings); });
     };
     EXPECT_EQ(message([](PaperRule::Settings& s) { s.rule.order = 5; }),
-              "paper rule: order is 5.000000; 3 or 4 needed");
+              "paper rule: order is 5; 3 or 4 needed");
     EXPECT_NE(
         message([](PaperRule::Settings& s) { s.rule.domains.near_influence = 0.95; }).find("near_influence"),
         std::string::npos);
+    EXPECT_EQ(message([](PaperRule::Settings& s) { s.rule.domains.near_influence = -1e-9; }),
+              "paper rule: near_influence is -1e-09; above 0 and at most middle_influence needed");
     EXPECT_NE(message([](PaperRule::Settings& s) { s.rule.penalty = NAN; }).find("penalty"),
               std::string::npos);
     EXPECT_EQ(message([](PaperRule::Settings& s) { s.applications = 0; }),
-              "paper rule: applications is 0.000000; at least 1 needed");
+              "paper rule: applications is 0; at least 1 needed");
     EXPECT_NE(message([](PaperRule::Settings& s) { s.voxels = 0; }).find("0 voxels"), std::string::npos);
 }
 
