@@ -15,7 +15,7 @@ using namespace volume;
 
 namespace {
 
-/// A stiff bar that is pulled sideways at one corner.
+/// A stiff bar whose ends are pulled sideways, in opposite directions at opposite corners.
 class PulledBar : public testing::Test {
 protected:
     PulledBar()
@@ -29,6 +29,9 @@ protected:
     {
         hessian_.linearise(block_.mesh.positions, Definiteness::Projected);
         gradient_[0] = Vec3(0.0, 1.0, 0.5);
+        gradient_[block_.at(0, 6, 6)] = -gradient_[0];
+        gradient_[block_.at(24, 0, 0)] = -gradient_[0];
+        gradient_[block_.at(24, 6, 6)] = gradient_[0];
     }
 
     /// Direction by conjugate gradients with a coarse space for clusters of an extent.

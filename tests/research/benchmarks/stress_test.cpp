@@ -27,6 +27,7 @@ constexpr double kCreep = 0.6;
 const std::set<std::string> kUnfold{"stiffness 1",
                                     "dt 1/1000 stiffness 1 density 0.01",
                                     "dt 1/1000 stiffness 1 density 1",
+                                    "dt 1/10 stiffness 1 density 1",
                                     "stiffness 1e+07",
                                     "ball jumps in (mesh) dt 1/10",
                                     "ball jumps in dt 1/10",
