@@ -28,6 +28,11 @@ constexpr double kSlow = 0.5;
 /// Excess length of an edge with a limited end, relative to max_deflection [-].
 constexpr double kEdgeStretch = 0.2;
 
+/// Largest deviation of a vertex that widens the search for its pairs, relative to max_deflection [-]: half a
+/// mean edge, so that pairs are searched within a quarter of an edge. Wider searches are as many, and find
+/// more pairs by the cube of edges.
+constexpr double kMaxDeviation = 5.0;
+
 /// Passes that limit the vertices of a pair or sliver in proportion. Vertices still blocked afterwards move
 /// with their zone.
 constexpr int kPasses = 16;
@@ -106,10 +111,11 @@ void TrajectoryLimiter::update_query()
 {
     Cancellation::check();
     changes_.clear();
-    for (const int v : stale_.items())
-        changes_.push_back({v, motion_[v],
-                            std::max((motion_[v] - displacement_[v]).norm(),
-                                     deflected_.has(v) ? settings_.max_deflection : 0.0)});
+    for (const int v : stale_.items()) {
+        const double deviation = std::max((motion_[v] - displacement_[v]).norm(),
+                                          deflected_.has(v) ? settings_.max_deflection : 0.0);
+        changes_.push_back({v, motion_[v], std::min(deviation, kMaxDeviation * settings_.max_deflection)});
+    }
     stale_.clear();
     blocked_ = query_->update(changes_);
 }

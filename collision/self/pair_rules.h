@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "collision/self/facing.h"
@@ -62,12 +63,14 @@ struct MayMeet {
     double margin;  ///< [m]
     bool is_moving; ///< MovingFrame::is_moving
 
-    /// False only if the pair stays `margin` apart along the direction that separates it at x. Trajectories
-    /// are straight, so a separation at start and end holds throughout.
+    /// False only if the pair stays `margin` apart along the direction that separates it at x, or along that
+    /// in which its sides pass each other. Trajectories are straight, so a separation at start and end holds
+    /// throughout. The second direction sorts out most pairs of sides that move by several edges.
     TOILE_HD bool operator()(const std::array<int, 4>& v, bool is_edge_edge) const
     {
         const int first = first_count(is_edge_edge);
-        const double apart = margin + slack_of(v, first);
+        const Slack slack = slack_of(v, first);
+        const double apart = margin + slack.of_sides;
         const std::array<Vec3, 4> at = corners_of(v, x);
         const Vec3 difference = closest_difference(closest_weights(is_edge_edge, at), at);
         const double distance = difference.norm();
@@ -75,21 +78,56 @@ struct MayMeet {
             return true;
         if (!is_moving)
             return false;
+        const std::array<Vec3, 4> motion = corners_of(v, trajectories.motion);
         const Vec3 n = difference / distance;
+        return gap_at_end(n, at, motion, first) <= apart &&
+               !pass_apart(difference, at, motion, first, margin + 2.0 * slack.largest);
+    }
+
+private:
+    struct Slack {
+        double of_sides; ///< [m] sum of the largest of each side
+        double largest;  ///< [m] of all
+    };
+
+    /// Distance along n between the sides at the end [m]; negative if they overlap.
+    TOILE_HD static double gap_at_end(const Vec3& n, const std::array<Vec3, 4>& at,
+                                      const std::array<Vec3, 4>& motion, int first)
+    {
         double ahead = std::numeric_limits<double>::max(), behind = -ahead;
         for (int k = 0; k < 4; ++k) {
-            const double height = n.dot(at[k] - at[3] + trajectories.motion[v[k]]);
+            const double height = n.dot(at[k] - at[3] + motion[k]);
             if (k < first)
                 ahead = std::min(ahead, height);
             else
                 behind = std::max(behind, height);
         }
-        return ahead - behind <= apart;
+        return ahead - behind;
     }
 
-private:
-    /// Sum of the largest slack of each side [m].
-    TOILE_HD double slack_of(const std::array<int, 4>& v, int first) const
+    /// True if the sides stay `apart` along the difference that their closest points have where they pass
+    /// each other by their mean motion. `apart` is that of the widest slack: a pair without it makes no term.
+    TOILE_HD static bool pass_apart(const Vec3& difference, const std::array<Vec3, 4>& at,
+                                    const std::array<Vec3, 4>& motion, int first, double apart)
+    {
+        Vec3 side[2] = {Vec3::Zero(), Vec3::Zero()};
+        for (int k = 0; k < 4; ++k)
+            side[k < first ? 0 : 1] += motion[k];
+        const Vec3 relative = side[0] / first - side[1] / (4 - first);
+        const double squared = relative.squaredNorm();
+        if (!(squared > 0.0))
+            return false;
+        const double time = std::fmin(std::fmax(-difference.dot(relative) / squared, 0.0), 1.0);
+        const Vec3 passing = difference + time * relative;
+        const double distance = passing.norm();
+        if (!(distance > apart))
+            return false;
+        const Vec3 n = passing / distance;
+        const std::array<Vec3, 4> still{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+        return gap_at_end(n, at, still, first) > apart && gap_at_end(n, at, motion, first) > apart;
+    }
+
+    TOILE_HD Slack slack_of(const std::array<int, 4>& v, int first) const
     {
         double slack[2] = {0.0, 0.0};
         if (!trajectories.slack.empty())
@@ -97,7 +135,7 @@ private:
                 double& side = slack[k < first ? 0 : 1];
                 side = std::max(side, trajectories.slack[v[k]]);
             }
-        return slack[0] + slack[1];
+        return {slack[0] + slack[1], std::max(slack[0], slack[1])};
     }
 };
 

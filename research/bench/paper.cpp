@@ -2,7 +2,6 @@
 
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/interrupt.h"
-#include "apps/toile/terminal/progress.h"
 #include "core/base/error.h"
 #include "research/bench/benchmark.h"
 #include "research/bench/tables.h"
@@ -18,6 +17,14 @@ const std::vector<std::string> kTables{"paper_table1.csv", "paper_table1.md"};
 /// Number of frames with --quick.
 constexpr int kQuickFrames = 4;
 
+/// Frames to measure after the start pose.
+int frames_of(const std::filesystem::path& scene, const BenchOptions& options)
+{
+    if (options.frames)
+        return *options.frames - 1;
+    return options.quick ? kQuickFrames : scenes::read_scene(scene).frames - 1;
+}
+
 } // namespace
 
 int bench_paper(const BenchOptions& options)
@@ -31,24 +38,24 @@ int bench_paper(const BenchOptions& options)
         throw InvalidInput("paper: needs a GPU: " + why);
     const CudaSpace space(0);
     const app::InterruptGuard interrupt;
-    app::Progress progress("scene", int(options.scenes.size()), options.quiet);
-    std::vector<paper::TableRow> rows;
-    for (size_t i = 0; i < options.scenes.size() && !interrupt.requested(); ++i) {
-        const int frames = scenes::read_scene(options.scenes[i]).frames - 1;
-        for (paper::TableRow& row : paper::measure_table1(space, options.scenes[i],
-                                                          options.frames  ? *options.frames - 1
-                                                          : options.quick ? kQuickFrames
-                                                                          : frames))
-            rows.push_back(std::move(row));
-        progress.update(int(i) + 1, options.scenes[i].stem().string());
-    }
-    std::cout << space.described() << "\n\n" << paper::markdown_of(rows);
-    if (interrupt.requested()) {
-        std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
-        return app::kExitFailure;
-    }
-    write_tables(options.output, {{kTables[0], paper::csv_of(rows)}, {kTables[1], paper::markdown_of(rows)}});
-    return app::kExitOk;
+    std::cout << space.described() << "\n\n" << paper::markdown_header() << std::flush;
+    std::vector<TableFile> tables;
+    paper::TableCalls calls;
+    calls.measure = [&](const std::filesystem::path& scene, paper::TableMethod method) {
+        return paper::measure_row(space, scene, method, frames_of(scene, options));
+    };
+    calls.finished = [&](const std::vector<paper::TableRow>& rows) {
+        std::cout << paper::markdown_of(rows.back()) << std::flush;
+        tables = {{kTables[0], paper::csv_of(rows)}, {kTables[1], paper::markdown_of(rows)}};
+        update_tables(options.output, tables);
+    };
+    calls.failed = [](const std::string& error) { std::cerr << "toile: error: " << error << std::endl; };
+    calls.goes_on = [&] { return !interrupt.requested(); };
+    const bool has_all = paper::measure_table1(options.scenes, calls);
+    write_tables(options.output, tables);
+    if (interrupt.requested())
+        std::cerr << "toile: error: interrupted; the tables have the rows before" << std::endl;
+    return has_all && !interrupt.requested() ? app::kExitOk : app::kExitFailure;
 }
 
 } // namespace toile::research

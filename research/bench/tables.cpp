@@ -22,12 +22,19 @@ void require_writable(const std::filesystem::path& folder, const std::vector<std
 
 void write_tables(const std::filesystem::path& folder, const std::vector<TableFile>& files)
 {
+    update_tables(folder, files);
     if (folder.empty())
         return;
-    for (const TableFile& file : files) {
-        write_atomically(folder / file.name, file.content);
+    for (const TableFile& file : files)
         std::cout << (folder / file.name).string() << "\n";
-    }
+}
+
+void update_tables(const std::filesystem::path& folder, const std::vector<TableFile>& files)
+{
+    if (folder.empty())
+        return;
+    for (const TableFile& file : files)
+        write_atomically(folder / file.name, file.content);
 }
 
 } // namespace toile::research

@@ -19,4 +19,7 @@ void require_writable(const std::filesystem::path& folder, const std::vector<std
 /// Writes each file atomically and lists it on standard output; nothing for an empty folder.
 void write_tables(const std::filesystem::path& folder, const std::vector<TableFile>& files);
 
+/// Likewise, but lists nothing: for results so far.
+void update_tables(const std::filesystem::path& folder, const std::vector<TableFile>& files);
+
 } // namespace toile::research

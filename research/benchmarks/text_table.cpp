@@ -51,6 +51,14 @@ std::string markdown(const Row& header, const std::vector<Row>& rows)
     return table;
 }
 
+std::string markdown_row(const Row& header, const Row& row)
+{
+    std::vector<size_t> widths;
+    for (size_t i = 0; i < row.size(); ++i)
+        widths.push_back(std::max(header[i].size(), row[i].size()));
+    return markdown_line(row, widths, ' ');
+}
+
 std::string csv(const Row& header, const std::vector<Row>& rows)
 {
     std::string table = csv_line(header);

@@ -25,6 +25,9 @@ std::string format(const char* form, double value);
 /// Columns aligned: for terminals and for Markdown.
 std::string markdown(const Row& header, const std::vector<Row>& rows);
 
+/// A further line of a markdown() table of `header` alone; longer cells push the rest aside.
+std::string markdown_row(const Row& header, const Row& row);
+
 /// Comma separated values; cells with commas are quoted.
 std::string csv(const Row& header, const std::vector<Row>& rows);
 

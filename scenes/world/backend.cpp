@@ -4,6 +4,7 @@
 #include "core/compute/cuda/runtime/device.h"
 #include "scenes/format/field.h"
 #include "scenes/method/solver_choice.h"
+#include "scenes/world/scene_costs.h"
 
 namespace toile::scenes {
 
@@ -16,11 +17,6 @@ std::string only_on_cpu(const std::string& key, std::string_view word)
     return key + " \"" + std::string(word) + "\" runs on the CPU only";
 }
 
-/// Estimated memory of a scene on a GPU [bytes]. 12 kB per vertex of cloth and 17 kB per vertex of soft
-/// bodies have been measured; a scene has other data too.
-constexpr std::size_t kBytesOfScene = std::size_t(64) << 20, kBytesOfClothVertex = 14'000,
-                      kBytesOfBodyVertex = 20'000;
-
 std::shared_ptr<const CudaSpace> take_cpu(const std::string& why,
                                           const std::function<void(const std::string&)>& warn)
 {
@@ -28,8 +24,6 @@ std::shared_ptr<const CudaSpace> take_cpu(const std::string& why,
         warn("the backend is cpu: " + why);
     return nullptr;
 }
-
-std::string in_mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
 } // namespace
 
@@ -92,21 +86,19 @@ std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const
     return take_cpu(why_cpu, warn);
 }
 
-std::shared_ptr<const CudaSpace> space_with_capacity(std::shared_ptr<const CudaSpace> space,
-                                                     long cloth_vertices, long body_vertices,
+std::shared_ptr<const CudaSpace> space_with_capacity(std::shared_ptr<const CudaSpace> space, Backend backend,
+                                                     const SceneCosts& costs,
                                                      const std::function<void(const std::string&)>& warn)
 {
     if (!space)
         return nullptr;
-    const std::size_t needed = kBytesOfScene + kBytesOfClothVertex * std::size_t(cloth_vertices) +
-                               kBytesOfBodyVertex * std::size_t(body_vertices),
-                      free = space->free_memory();
-    if (needed <= free)
+    const FreeMemory free{space->described(), space->free_memory()};
+    if (backend != Backend::Auto) {
+        require_capacity(costs, free);
         return space;
-    return take_cpu(space->described() + " has " + in_mebibytes(free) + " left, " +
-                        std::to_string(cloth_vertices + body_vertices) + " vertices may take " +
-                        in_mebibytes(needed),
-                    warn);
+    }
+    const std::string why_cpu = why_too_large(costs, free);
+    return why_cpu.empty() ? space : take_cpu(why_cpu, warn);
 }
 
 } // namespace toile::scenes

@@ -12,6 +12,8 @@ class CudaSpace;
 
 namespace toile::scenes {
 
+struct SceneCosts;
+
 /// Machine on which a World minimises its steps.
 enum class Backend {
     Cpu,
@@ -33,11 +35,11 @@ void require_runs_on_gpu(const Scene& scene);
 std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const Scene& scene,
                                               const std::function<void(const std::string&)>& warn);
 
-/// Returns `space`, or null if a scene with this many vertices of cloth and of soft bodies may not fit into
-/// its memory. The estimate is conservative, from measured scenes with self-contact (docs/journal/gpu.md).
+/// Returns `space`, or null if Auto takes the CPU because the scene may not fit into its memory.
 /// @param warn  receives both sizes if it does not fit; may be empty
-std::shared_ptr<const CudaSpace> space_with_capacity(std::shared_ptr<const CudaSpace> space,
-                                                     long cloth_vertices, long body_vertices,
+/// @throws DeviceError if Cuda is requested and the scene can't fit
+std::shared_ptr<const CudaSpace> space_with_capacity(std::shared_ptr<const CudaSpace> space, Backend backend,
+                                                     const SceneCosts& costs,
                                                      const std::function<void(const std::string&)>& warn);
 
 } // namespace toile::scenes

@@ -17,6 +17,7 @@
 #include "scenes/method/solver_choice.h"
 #include "scenes/world/cloth_group.h"
 #include "scenes/world/likely_unit.h"
+#include "scenes/world/scene_costs.h"
 #include "scenes/world/start_pose.h"
 
 namespace toile::scenes {
@@ -156,11 +157,26 @@ struct World::Parts {
                 options.warn(warning);
         }
         SceneBodies bodies = make_bodies(scene, colliders, int(total_vertices(cloths)));
-        if (options.backend == Backend::Auto)
-            space = space_with_capacity(space, total_vertices(cloths), bodies.vertex_count(), options.warn);
+        choose_space(cloths, bodies, options);
         const LongWork::Part part(kCloths, 1.0);
         groups = make_groups(scene, std::move(cloths), std::move(bodies), colliders, options, space.get());
         LongWork::update(1.0);
+    }
+
+    /// Ends what does not fit, and states what tables and memory will cost.
+    void choose_space(const std::vector<SceneCloth>& cloths, const SceneBodies& bodies,
+                      const WorldOptions& options)
+    {
+        const SceneCosts costs = expected_costs(scene, cloths, bodies, space != nullptr);
+        const bool had_space = space != nullptr;
+        space = space_with_capacity(space, options.backend, costs, options.warn);
+        if (!options.note)
+            return;
+        if (space)
+            options.note(table_text(costs) + "; " +
+                         memory_text(costs, {space->described(), space->free_memory()}));
+        else if (scene.solver.method == scene::SolverMethod::Quadrature)
+            options.note(table_text(had_space ? expected_costs(scene, cloths, bodies, false) : costs));
     }
 
     void load_avatars(const WorldOptions& options, double end)

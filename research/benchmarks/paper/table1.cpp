@@ -1,5 +1,6 @@
 #include "research/benchmarks/paper/table1.h"
 
+#include "core/base/error.h"
 #include "research/benchmarks/paper/published.h"
 #include "research/benchmarks/text_table.h"
 
@@ -48,26 +49,54 @@ Row row_of(const TableRow& row)
     return cells;
 }
 
+std::string name_of(TableMethod method)
+{
+    return method == TableMethod::ToTheError ? "to the error" : "quadrature, by move";
+}
+
 } // namespace
 
-std::vector<TableRow> measure_table1(const CudaSpace& space, const std::filesystem::path& scene, int frames)
+TableRow measure_row(const CudaSpace& space, const std::filesystem::path& scene, TableMethod method,
+                     int frames)
 {
-    const std::string name = scene.stem().string();
     gpu::SceneCase what;
-    what.name = name;
+    what.name = scene.stem().string();
     what.file = scene;
     what.frames = frames;
-    what.keeps_solver = true;
+    what.keeps_solver = method == TableMethod::ToTheError;
+    if (!what.keeps_solver) {
+        what.stop = StepStop::Move;
+        if (const Published* const theirs = published(what.name))
+            what.move = theirs->move;
+    }
+    return {what.name, name_of(method), gpu::measure_scene(space, what).back()};
+}
+
+bool measure_table1(const std::vector<std::filesystem::path>& scenes, const TableCalls& calls)
+{
     std::vector<TableRow> rows;
-    for (gpu::SceneRun& run : gpu::measure_scene(space, what))
-        rows.push_back({name, "to the error", std::move(run)});
-    what.keeps_solver = false;
-    what.stop = StepStop::Move;
-    if (const Published* const theirs = published(name))
-        what.move = theirs->move;
-    for (gpu::SceneRun& run : gpu::measure_scene(space, what))
-        rows.push_back({name, "quadrature, by move", std::move(run)});
-    return rows;
+    bool has_failed = false;
+    const auto report = [&](const std::string& error) {
+        has_failed = true;
+        calls.failed(error);
+    };
+    for (const std::filesystem::path& scene : scenes) {
+        bool works = true;
+        for (const TableMethod method : {TableMethod::ToTheError, TableMethod::QuadratureByMove}) {
+            if (!works || !calls.goes_on())
+                continue;
+            try {
+                rows.push_back(calls.measure(scene, method));
+                calls.finished(rows);
+            } catch (const InvalidInput& error) { // names the scene's file
+                works = false;
+                report(error.what());
+            } catch (const std::exception& error) {
+                report(scene.string() + ", " + name_of(method) + ": " + error.what());
+            }
+        }
+    }
+    return !has_failed;
 }
 
 std::string markdown_of(const std::vector<TableRow>& rows)
@@ -76,5 +105,9 @@ std::string markdown_of(const std::vector<TableRow>& rows)
 }
 
 std::string csv_of(const std::vector<TableRow>& rows) { return csv(kColumns, rows_of(rows, row_of)); }
+
+std::string markdown_header() { return markdown(kColumns, {}); }
+
+std::string markdown_of(const TableRow& row) { return markdown_row(kColumns, row_of(row)); }
 
 } // namespace toile::research::paper

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -7,19 +9,43 @@
 
 namespace toile::research::paper {
 
+/// How steps are minimised and when they end.
+enum class TableMethod {
+    ToTheError,       ///< the scene's own method, to the default error of a step
+    QuadratureByMove, ///< L-BFGS with quadrature, until positions move as little as in the paper
+};
+
 /// A scene of the paper's Table 1 on a GPU, by one method.
 struct TableRow {
     std::string scene, method;
     gpu::SceneRun run;
 };
 
-/// Runs a scene by its own method, to the default error of a step, and by L-BFGS with quadrature until
-/// positions move as little as in the paper.
+/// Runs a scene by a method.
 /// @param frames  after the start pose
-std::vector<TableRow> measure_table1(const CudaSpace& space, const std::filesystem::path& scene, int frames);
+/// @throws InvalidInput for a scene that does not work, DeviceError if the GPU lacks memory or fails
+TableRow measure_row(const CudaSpace& space, const std::filesystem::path& scene, TableMethod method,
+                     int frames);
+
+/// Callbacks of measure_table1().
+struct TableCalls {
+    std::function<TableRow(const std::filesystem::path& scene, TableMethod method)> measure; ///< may throw
+    std::function<void(const std::vector<TableRow>& rows)> finished; ///< all so far, after each row
+    std::function<void(const std::string& error)> failed;            ///< names scene and method
+    std::function<bool()> goes_on;                                   ///< asked before each row
+};
+
+/// Measures scenes by both methods. Where a row fails, the next one follows; a scene that does not work has
+/// no second row.
+/// @return whether no row failed
+bool measure_table1(const std::vector<std::filesystem::path>& scenes, const TableCalls& calls);
 
 /// Ours beside the paper's.
 std::string markdown_of(const std::vector<TableRow>& rows);
 std::string csv_of(const std::vector<TableRow>& rows);
+
+/// Parts of such a table, for rows that are printed as they finish: not aligned.
+std::string markdown_header();
+std::string markdown_of(const TableRow& row);
 
 } // namespace toile::research::paper

@@ -2,14 +2,6 @@
 
 namespace toile::scenes {
 
-long SceneBodies::vertex_count() const
-{
-    long count = solids ? solids->bodies().unknown_count() : 0;
-    for (int i = 0; soft_bodies && i < soft_bodies->count(); ++i)
-        count += long(soft_bodies->rest_positions(i).size());
-    return count;
-}
-
 SceneBodies make_bodies(const Scene& scene, const std::vector<Collider>& colliders, int cloth_vertices)
 {
     SceneBodies bodies;

@@ -14,7 +14,6 @@ struct SceneBodies {
     std::unique_ptr<SceneSoftBodies> soft_bodies; ///< null: none
 
     bool any() const { return solids || soft_bodies; }
-    long vertex_count() const; ///< of soft bodies, inner ones included, and unknowns of solids
 };
 
 /// @param cloth_vertices  of all cloths, which come first among the unknowns
