@@ -1,8 +1,11 @@
 #include "research/scenes/literature_methods.h"
 
+#include "core/base/assert.h"
 #include "core/base/error.h"
 #include "research/linear/aggregated_jacobi.h"
 #include "research/linear/chebyshev_solver.h"
+#include "research/linear/cuda/aggregated_jacobi.h"
+#include "research/linear/cuda/chebyshev_solver.h"
 #include "research/linear/jacobi_pcg.h"
 #include "research/linear/multigrid.h"
 #include "research/linear/subspace_solver.h"
@@ -78,6 +81,15 @@ std::unique_ptr<GlobalSolver> LiteratureMethods::make_global_solver(SolverMethod
     default:
         throw InvalidInput(source + ": its solver.method is no baseline's global solver");
     }
+}
+
+std::unique_ptr<DeviceSolver> LiteratureMethods::make_device_solver(SolverMethod method,
+                                                                    const CudaSpace& space) const
+{
+    if (method == SolverMethod::Chebyshev)
+        return std::make_unique<DeviceChebyshevSolver>(space);
+    TOILE_ASSERT(method == SolverMethod::AJacobi);
+    return std::make_unique<DeviceAggregatedJacobi>(space);
 }
 
 std::unique_ptr<PointMasses> LiteratureMethods::make_body(const scene::Solver& solver,

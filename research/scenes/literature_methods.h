@@ -10,6 +10,9 @@ public:
     std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method, const TriangleMesh& start,
                                                      const std::string& source) const override;
 
+    std::unique_ptr<DeviceSolver> make_device_solver(scene::SolverMethod method,
+                                                     const CudaSpace& space) const override;
+
     std::unique_ptr<PointMasses> make_body(const scene::Solver& solver, std::vector<Vec3> positions,
                                            garment::ClothModel cloth) const override;
 };

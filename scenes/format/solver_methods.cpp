@@ -8,6 +8,12 @@ bool is_baseline(SolverMethod method)
            method != SolverMethod::Quadrature;
 }
 
+bool runs_on_gpu(SolverMethod method)
+{
+    return method == SolverMethod::Auto || method == SolverMethod::Quadrature ||
+           method == SolverMethod::Chebyshev || method == SolverMethod::AJacobi;
+}
+
 bool replaces_minimiser(SolverMethod method)
 {
     return method == SolverMethod::Xpbd || method == SolverMethod::Vbd;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/linear/global_solver.h"
+#include "core/linear/cuda/solver.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/pd/step/point_masses.h"
 #include "garment/energy/cloth_model.h"
@@ -26,6 +26,10 @@ public:
     virtual std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method,
                                                              const TriangleMesh& start,
                                                              const std::string& source) const = 0;
+
+    /// Makes the same on a GPU, for all cloths and bodies at once: runs_on_gpu() and is_baseline().
+    virtual std::unique_ptr<DeviceSolver> make_device_solver(scene::SolverMethod method,
+                                                             const CudaSpace& space) const = 0;
 
     /// Makes the body of a method that replaces the minimiser: replaces_minimiser().
     virtual std::unique_ptr<PointMasses> make_body(const scene::Solver& solver, std::vector<Vec3> positions,

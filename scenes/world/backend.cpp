@@ -3,12 +3,11 @@
 #include "core/base/error.h"
 #include "core/compute/cuda/runtime/device.h"
 #include "scenes/format/field.h"
+#include "scenes/format/solver_methods.h"
 #include "scenes/method/solver_choice.h"
 #include "scenes/world/scene_costs.h"
 
 namespace toile::scenes {
-
-using scene::SolverMethod;
 
 namespace {
 
@@ -30,7 +29,7 @@ std::shared_ptr<const CudaSpace> take_cpu(const std::string& why,
 std::string why_not_on_gpu(const Scene& scene)
 {
     const scene::Solver& solver = scene.solver;
-    if (solver.method != SolverMethod::Auto && solver.method != SolverMethod::Quadrature)
+    if (!runs_on_gpu(solver.method))
         return only_on_cpu("solver.method", scene_format::word_of(solver.method));
     if (const OuterMethod outer = step_method_of(scene).outer;
         outer != OuterMethod::Newton && outer != OuterMethod::Lbfgs)

@@ -76,6 +76,8 @@ public:
 
 private:
     std::unique_ptr<PointMasses> make_body(const Scene& scene, const WorldOptions& options);
+    std::unique_ptr<DeviceSolver> make_device_solver(scene::SolverMethod method, const WorldOptions& options,
+                                                     const CudaSpace& space) const;
     std::unique_ptr<PointMasses> make_device_body(const Scene& scene, const WorldOptions& options,
                                                   const CudaSpace& space);
     struct Start {

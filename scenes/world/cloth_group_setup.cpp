@@ -166,10 +166,12 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     return body;
 }
 
-/// Projective dynamics with the fields on a GPU. Equal cloths and soft bodies use the same tables.
-std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, const WorldOptions& options,
-                                                          const CudaSpace& space)
+std::unique_ptr<DeviceSolver> ClothGroup::make_device_solver(scene::SolverMethod method,
+                                                             const WorldOptions& options,
+                                                             const CudaSpace& space) const
 {
+    if (is_baseline(method))
+        return options.baselines->make_device_solver(method, space);
     std::vector<DeviceQuadratureSolver::Part> parts;
     for (const SceneCloth& cloth : cloths_)
         parts.push_back(
@@ -178,6 +180,14 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
         parts.push_back({embedded(soft_bodies_->rest_positions(i)),
                          source_of_tables(options, soft_bodies_->state(i).name).listener, kTablesOfVolumes,
                          soft_bodies_->unknowns(i)});
+    return std::make_unique<DeviceQuadratureSolver>(space, std::move(parts),
+                                                    source_of_tables(options, "").store);
+}
+
+/// Projective dynamics with the fields on a GPU. Equal cloths and soft bodies use the same tables.
+std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, const WorldOptions& options,
+                                                          const CudaSpace& space)
+{
     DeviceBody::Settings settings;
     const StepMethod method = step_method_of(scene);
     settings.tolerance = method.velocity_tolerance * scene.step_duration();
@@ -187,12 +197,12 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
     settings.max_iterations = method.max_iterations;
     settings.outer = method.outer;
     settings.speed_tolerance = method.velocity_tolerance;
+    settings.extent = soft_bodies_ ? Extent::Volume : Extent::Surface;
     Start start = this->start();
     auto body = std::make_unique<DeviceBody>(
         space, start.positions,
         std::make_unique<System>(std::move(start.masses), make_energies(method.outer),
-                                 std::make_unique<DeviceQuadratureSolver>(
-                                     space, std::move(parts), source_of_tables(options, "").store)),
+                                 make_device_solver(scene.solver.method, options, space)),
         settings);
     body->set_velocities(start.velocities);
     auto loads = make_loads(scene, space);

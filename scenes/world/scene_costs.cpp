@@ -8,6 +8,7 @@
 #include "core/compute/hash.h"
 #include "core/compute/parallel.h"
 #include "core/quadrature/expected_tables.h"
+#include "scenes/format/solver_methods.h"
 
 namespace toile::scenes {
 
@@ -42,7 +43,7 @@ public:
         if (has_core || is_attached(name))
             key.add(costs_.parts);
         ++costs_.parts;
-        if (vertices == 0 || !known_.insert(key.result()).second)
+        if (vertices == 0 || is_baseline(scene_.solver.method) || !known_.insert(key.result()).second)
             return;
         const ExpectedTables tables =
             on_gpu_ ? expected_tables_on_gpu(vertices, extent) : expected_tables(vertices, extent, threads_);

@@ -26,6 +26,7 @@ TEST(Backend, NamesFeaturesThatNeedTheCpu)
 {
     EXPECT_EQ(why_not_on_gpu(scene_with("")), "");
     EXPECT_EQ(why_not_on_gpu(scene_with(R"("solver": {"method": "quadrature"}, )")), "");
+    EXPECT_EQ(why_not_on_gpu(scene_with(R"("solver": {"method": "a-jacobi"}, )")), "");
     EXPECT_EQ(why_not_on_gpu(scene_with(R"("solver": {"method": "multigrid"}, )")),
               R"(solver.method "multigrid" runs on the CPU only)");
     EXPECT_EQ(why_not_on_gpu(scene_with(R"("solver": {"outer": "anderson"}, )")),

@@ -57,8 +57,8 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
     masses_.upload(system_->masses());
     if (settings_.outer == OuterMethod::Newton) {
         const Curvature curvature(x_.size(), system_->energies());
-        newton_.emplace(space_, embedded(positions), curvature.blocks(), curvature.isotropic(), energies_,
-                        *solver_);
+        newton_.emplace(space_, embedded(positions), curvature.blocks(), curvature.isotropic(),
+                        settings_.extent, energies_, *solver_);
     } else {
         descent_.emplace(space_, x_.size(), energies_.partial_count());
         drive_.resize(x_.size());

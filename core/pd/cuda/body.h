@@ -35,6 +35,7 @@ public:
         Integrator integrator = Integrator::ImplicitEuler;
         OuterMethod outer = OuterMethod::Lbfgs; ///< or Newton
         double speed_tolerance = 0.01;          ///< [m/s] of Newton's method, in place of `tolerance`
+        Extent extent = Extent::Surface;        ///< as Body's
         bool begins_by_local_global = true;     ///< as Body's
     };
 

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "research/benchmarks/text_table.h"
+#include "research/scenes/literature_methods.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world/world.h"
 #include "scenes/world/world_crossings.h"
@@ -86,14 +87,25 @@ scenes::Scene scene_of(const SceneCase& what)
     scenes::Scene scene = scenes::read_scene(what.file);
     if (what.substeps > 0)
         scene.solver.substeps = what.substeps;
-    if (what.keeps_solver)
+    if (what.keeps_solver) {
+        if (what.velocity_tolerance > 0.0)
+            scene.solver.velocity_tolerance = what.velocity_tolerance;
         return scene;
-    scene.solver.method = scene::SolverMethod::Quadrature;
+    }
+    scene.solver.method = what.method;
     scene.solver.stop = what.stop.value_or(scene.solver.stop);
     scene.solver.outer = OuterMethod::Lbfgs;
     scene.solver.velocity_tolerance = what.move / scene.step_duration();
     scene.solver.max_iterations = 30;
     return scene;
+}
+
+std::vector<Vec3> positions_of(const scenes::World& world)
+{
+    std::vector<Vec3> positions;
+    for (const scenes::ClothState& surface : world.simulated())
+        positions.insert(positions.end(), surface.positions.begin(), surface.positions.end());
+    return positions;
 }
 
 /// @param rows  ascending frame numbers; a row is added at the end of each
@@ -108,6 +120,8 @@ void run_on(scenes::Backend backend, const SceneCase& what, const scenes::Scene&
 
     scenes::WorldOptions options;
     options.backend = backend;
+    static const LiteratureMethods literature;
+    options.baselines = &literature;
     std::unique_ptr<scenes::World> world;
     start.load_s = seconds_of([&] { world = std::make_unique<scenes::World>(scene, options); });
     start.prepare_s = seconds_of([&] { world->prepare(); });
@@ -117,14 +131,18 @@ void run_on(scenes::Backend backend, const SceneCase& what, const scenes::Scene&
     start.crossings_before = crossing_count(*world);
 
     Tally tally(std::move(start), world->stages());
+    std::vector<Vec3> sample;
     for (const int end : rows) {
         while (world->frame() < end) {
             StepReport report;
             const double seconds = seconds_of([&] { report = world->advance_frame(); });
             tally.add(report, seconds);
+            if (world->frame() == what.sample_frame)
+                sample = positions_of(*world);
         }
         SceneRun run = tally.so_far(world->stages());
         run.crossings = crossing_count(*world);
+        run.sample = sample;
         run.device_gb = (free_before - double(space.free_memory())) / kGiga;
         runs.push_back(std::move(run));
     }

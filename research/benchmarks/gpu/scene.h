@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "core/compute/cuda/runtime/device.h"
+#include "core/compute/types.h"
 #include "core/pd/step/step_stop.h"
+#include "scenes/format/scene.h"
 
 namespace toile::research::gpu {
 
@@ -19,8 +21,11 @@ struct SceneCase {
     int substeps = 0;   ///< per frame, instead of the scene's; 0: the scene's
     std::optional<StepStop> stop = {}; ///< instead of the scene's
     double move = 1e-3;                ///< change of positions at which L-BFGS ends [m]
-    bool keeps_solver = false;         ///< the scene's own, instead of L-BFGS with quadrature
-    bool needs_data = false;           ///< skipped if TOILE_DATA_DIR lacks files of the scene
+    bool keeps_solver = false;         ///< the scene's own, instead of L-BFGS
+    scene::SolverMethod method = scene::SolverMethod::Quadrature; ///< with L-BFGS
+    double velocity_tolerance = 0.0; ///< [m/s] instead of the scene's with keeps_solver; 0: the scene's
+    int sample_frame = 0;            ///< whose positions SceneRun::sample has; 0: none
+    bool needs_data = false;         ///< skipped if TOILE_DATA_DIR lacks files of the scene
 };
 
 /// Cost of the first frames of a scene on one backend, mean per step [ms].
@@ -44,7 +49,8 @@ struct SceneRun {
     double load_s = 0.0;      ///< meshes and start pose
     double prepare_s = 0.0;   ///< factors and tables
     double settle_s = 0.0;
-    double device_gb = 0.0; ///< used on the GPU at the end
+    double device_gb = 0.0;   ///< used on the GPU at the end
+    std::vector<Vec3> sample; ///< [vertices of all surfaces] at SceneCase::sample_frame [m]
 };
 
 /// Runs a case on the GPU of `space`, and on the CPU if the case asks for it.

@@ -1,5 +1,10 @@
 #include "research/benchmarks/paper/table1.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
 #include "core/base/error.h"
 #include "research/benchmarks/paper/published.h"
 #include "research/benchmarks/text_table.h"
@@ -10,12 +15,11 @@ namespace {
 
 constexpr int kDimensions = 3;
 
-const Row kColumns{"scene",           "method",       "bodies",      "DOF",
-                   "iterations",      "PCG",          "cull ms",     "narrow ms",
-                   "LG ms",           "step ms",      "prepare s",   "GPU GB",
-                   "at limit",        "crossings",    "paper DOF",   "paper iterations",
-                   "paper cull ms",   "paper narrow", "paper LG ms", "paper step ms",
-                   "... times bodies"};
+const Row kColumns{"scene",         "method",           "bodies",        "DOF",          "iterations",
+                   "PCG",           "cull ms",          "narrow ms",     "LG ms",        "step ms",
+                   "prepare s",     "GPU GB",           "at limit",      "crossings",    "error mm",
+                   "paper DOF",     "paper iterations", "paper cull ms", "paper narrow", "paper LG ms",
+                   "paper step ms", "... times bodies"};
 
 std::string in_thousands(double dofs) { return format("%.0fK", 1e-3 * dofs); }
 
@@ -35,7 +39,8 @@ Row row_of(const TableRow& row)
               format("%.1f", run.prepare_s),
               format("%.2f", run.device_gb),
               std::to_string(run.frames_at_limit),
-              std::to_string(run.crossings)};
+              std::to_string(run.crossings),
+              std::isnan(row.error) ? "" : format("%.2g", 1e3 * row.error)};
     const Published* const theirs = published(row.scene);
     if (theirs == nullptr) {
         cells.resize(kColumns.size());
@@ -51,7 +56,30 @@ Row row_of(const TableRow& row)
 
 std::string name_of(TableMethod method)
 {
-    return method == TableMethod::ToTheError ? "to the error" : "quadrature, by move";
+    switch (method) {
+    case TableMethod::Converged:
+        return "converged";
+    case TableMethod::ToTheError:
+        return "to the error";
+    case TableMethod::QuadratureByMove:
+        return "quadrature, by move";
+    default:
+        return "A-Jacobi, by move";
+    }
+}
+
+/// Tolerance of TableMethod::Converged [m/s]: the default's is 1e-2.
+constexpr double kConvergedTolerance = 1e-4;
+
+/// RMS distance of vertices; NaN if there is nothing to compare.
+double distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
+{
+    if (a.size() != b.size() || a.empty())
+        return std::numeric_limits<double>::quiet_NaN();
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i)
+        sum += (a[i] - b[i]).squaredNorm();
+    return std::sqrt(sum / double(a.size()));
 }
 
 } // namespace
@@ -63,7 +91,14 @@ TableRow measure_row(const CudaSpace& space, const std::filesystem::path& scene,
     what.name = scene.stem().string();
     what.file = scene;
     what.frames = frames;
-    what.keeps_solver = method == TableMethod::ToTheError;
+    what.sample_frame = kSampleFrame;
+    what.keeps_solver = method == TableMethod::Converged || method == TableMethod::ToTheError;
+    if (method == TableMethod::JacobiByMove)
+        what.method = scene::SolverMethod::AJacobi;
+    if (method == TableMethod::Converged) {
+        what.frames = std::min(frames, kSampleFrame);
+        what.velocity_tolerance = kConvergedTolerance;
+    }
     if (!what.keeps_solver) {
         what.stop = StepStop::Move;
         if (const Published* const theirs = published(what.name))
@@ -82,11 +117,19 @@ bool measure_table1(const std::vector<std::filesystem::path>& scenes, const Tabl
     };
     for (const std::filesystem::path& scene : scenes) {
         bool works = true;
-        for (const TableMethod method : {TableMethod::ToTheError, TableMethod::QuadratureByMove}) {
+        std::vector<Vec3> converged;
+        for (const TableMethod method : {TableMethod::Converged, TableMethod::ToTheError,
+                                         TableMethod::QuadratureByMove, TableMethod::JacobiByMove}) {
             if (!works || !calls.goes_on())
                 continue;
             try {
-                rows.push_back(calls.measure(scene, method));
+                TableRow row = calls.measure(scene, method);
+                if (method == TableMethod::Converged) {
+                    converged = row.run.sample;
+                    continue;
+                }
+                row.error = distance(row.run.sample, converged);
+                rows.push_back(std::move(row));
                 calls.finished(rows);
             } catch (const InvalidInput& error) { // names the scene's file
                 works = false;

@@ -11,15 +11,21 @@ namespace toile::research::paper {
 
 /// How steps are minimised and when they end.
 enum class TableMethod {
+    Converged,        ///< the scene's own method, to a hundredth of the default error of a step
     ToTheError,       ///< the scene's own method, to the default error of a step
     QuadratureByMove, ///< L-BFGS with quadrature, until positions move as little as in the paper
+    JacobiByMove,     ///< the same without quadrature: with A-Jacobi
 };
 
 /// A scene of the paper's Table 1 on a GPU, by one method.
 struct TableRow {
     std::string scene, method;
     gpu::SceneRun run;
+    double error = 0.0; ///< [m] RMS distance of SceneRun::sample to that of TableMethod::Converged; NaN: none
 };
+
+/// Frame whose positions are compared, and the last of TableMethod::Converged.
+inline constexpr int kSampleFrame = 8;
 
 /// Runs a scene by a method.
 /// @param frames  after the start pose
@@ -35,8 +41,8 @@ struct TableCalls {
     std::function<bool()> goes_on;                                   ///< asked before each row
 };
 
-/// Measures scenes by both methods. Where a row fails, the next one follows; a scene that does not work has
-/// no second row.
+/// Measures scenes by all methods, which have a row each but TableMethod::Converged. Where a row fails, the
+/// next one follows; a scene that does not work has no other row.
 /// @return whether no row failed
 bool measure_table1(const std::vector<std::filesystem::path>& scenes, const TableCalls& calls);
 

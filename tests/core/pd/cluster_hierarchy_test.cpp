@@ -34,16 +34,19 @@ struct Grids {
     }
     BlockMatrix blocks() const { return {int(points.size()), couplings}; }
     SparseMatrix none() const { return SparseMatrix(int(points.size()), int(points.size())); }
-    ClusterHierarchy hierarchy() const { return {points, blocks(), none()}; }
+    ClusterHierarchy hierarchy(Extent extent = Extent::Surface) const
+    {
+        return {points, blocks(), none(), extent};
+    }
 };
 
 Grids several()
 {
     Grids grids;
-    grids.add(50, 60);   // two levels
+    grids.add(50, 60);   // three blocks, regions of 128 vertices
     grids.add(2, 2);     // no cluster
     grids.add(9, 5);     // one cluster
-    grids.add(160, 120); // three levels
+    grids.add(160, 120); // 300 clusters, regions of 256 vertices
     grids.add(1, 1);
     return grids;
 }
@@ -64,72 +67,116 @@ TEST(ClusterHierarchy, HasEveryVertexOnceInClustersOfOneComponent)
         for (int k = hierarchy.first_vertex()[c]; k < hierarchy.first_vertex()[c + 1]; ++k)
             EXPECT_EQ(hierarchy.cluster_of()[hierarchy.vertices()[k]], c);
     }
-    ASSERT_EQ(hierarchy.levels().size(), 3u);
-    EXPECT_EQ(hierarchy.levels()[0].cluster_count, hierarchy.cluster_count() - 1); // the small ones have none
-    EXPECT_EQ(hierarchy.levels()[1].cluster_count, 3 + 19);
-    EXPECT_EQ(hierarchy.levels()[2].cluster_count, 2);
+    EXPECT_EQ(hierarchy.cluster_count(), 47 + 1 + 300 + 1); // the last holds the small components
+    EXPECT_EQ(hierarchy.block_count(), 3 + 1 + 19);
+    EXPECT_EQ(hierarchy.block_of().back(), -1);
+    EXPECT_EQ(hierarchy.component_count(), 2);
+    EXPECT_EQ(hierarchy.region_count(), 24 + 75);
 }
 
-TEST(ClusterHierarchy, HasBlocksOfTheChildrenOfOneParent)
+TEST(ClusterHierarchy, HasBlocksAndRegionsOfClustersOfOneComponent)
 {
     const ClusterHierarchy hierarchy = several().hierarchy();
-    for (size_t l = 0; l < hierarchy.levels().size(); ++l) {
-        const ClusterHierarchy::Level& level = hierarchy.levels()[l];
-        for (int c = 0; c < hierarchy.cluster_count(); ++c) {
-            const int cluster = level.cluster_of[c];
-            if (cluster < 0)
-                continue;
-            EXPECT_GE(c, level.first_of_cluster[cluster]);
-            EXPECT_LT(c, level.end_of_cluster[cluster]);
-            if (l + 1 == hierarchy.levels().size())
-                continue;
-            for (int d = 0; d < hierarchy.cluster_count(); ++d)
-                if (const int other = level.cluster_of[d];
-                    other >= 0 && level.block_of[other] == level.block_of[cluster]) {
-                    const ClusterHierarchy::Level& above = hierarchy.levels()[l + 1];
-                    EXPECT_EQ(above.cluster_of[c], above.cluster_of[d]);
-                }
-        }
-        for (int b = 0; b < level.block_count(); ++b) {
-            EXPECT_LE(level.first_of_block[b + 1] - level.first_of_block[b], ClusterHierarchy::kChildren);
-            for (int k = level.first_of_block[b]; k < level.first_of_block[b + 1]; ++k) {
-                EXPECT_EQ(level.block_of[k], b);
-                EXPECT_EQ(level.slot_of[k], k - level.first_of_block[b]);
-            }
+    for (int b = 0; b < hierarchy.block_count(); ++b) {
+        const int first = hierarchy.first_of_block()[b], end = hierarchy.first_of_block()[b + 1];
+        EXPECT_LE(end - first, ClusterHierarchy::kBlockClusters);
+        for (int c = first; c < end; ++c)
+            EXPECT_EQ(hierarchy.block_of()[c], b);
+    }
+    for (int k = 0; k < hierarchy.component_count(); ++k) {
+        const int first = hierarchy.first_region()[k], end = hierarchy.first_region()[k + 1];
+        EXPECT_LE(hierarchy.unknown_count() * (end - first), ClusterHierarchy::kMaxUnknowns);
+        for (int r = first; r < end; ++r) {
+            EXPECT_EQ(hierarchy.component_of()[r], k);
+            for (int c = hierarchy.clusters_of_region()[r].first; c < hierarchy.clusters_of_region()[r].end;
+                 ++c)
+                EXPECT_EQ(hierarchy.region_of()[c], r);
         }
     }
+    for (int c = 0; c < hierarchy.cluster_count(); ++c)
+        for (int at = hierarchy.first_neighbour()[c]; at < hierarchy.first_neighbour()[c + 1]; ++at) {
+            const int d = hierarchy.neighbours()[at];
+            EXPECT_EQ(hierarchy.region_of()[c] < 0, hierarchy.region_of()[d] < 0);
+            const auto begin = hierarchy.neighbours().begin();
+            EXPECT_TRUE(std::binary_search(begin + hierarchy.first_neighbour()[d],
+                                           begin + hierarchy.first_neighbour()[d + 1], c));
+        }
 }
 
-/// A translation, and stretch in the plane, are combinations of every level's functions.
-TEST(ClusterHierarchy, RepresentsAffineFieldsOnEveryLevel)
+TEST(ClusterHierarchy, KnowsTheClustersThatEntriesCouple)
+{
+    const Grids grids = several();
+    const ClusterHierarchy hierarchy = grids.hierarchy();
+    std::set<std::pair<int, int>> coupled;
+    for (int c = 0; c < hierarchy.cluster_count(); ++c)
+        if (hierarchy.block_of()[c] >= 0)
+            coupled.emplace(c, c);
+    for (const auto& [i, j] : grids.couplings) {
+        const int c = hierarchy.cluster_of()[i], d = hierarchy.cluster_of()[j];
+        if (hierarchy.block_of()[c] < 0)
+            continue;
+        coupled.emplace(c, d);
+        coupled.emplace(d, c);
+    }
+    std::set<std::pair<int, int>> listed;
+    for (int c = 0; c < hierarchy.cluster_count(); ++c)
+        for (int at = hierarchy.first_neighbour()[c]; at < hierarchy.first_neighbour()[c + 1]; ++at)
+            listed.emplace(c, hierarchy.neighbours()[at]);
+    EXPECT_EQ(listed, coupled);
+    EXPECT_EQ(listed.size(), hierarchy.neighbours().size());
+}
+
+/// A translation, and stretch along the axes of the extent, are combinations of a cluster's functions and of
+/// a region's.
+void expect_affine_fields(const Grids& grids, Extent extent, int regions)
+{
+    const ClusterHierarchy hierarchy = grids.hierarchy(extent);
+    const int rank = rank_of(extent);
+    ASSERT_EQ(hierarchy.function_count(), rank);
+    ASSERT_EQ(hierarchy.region_count(), regions);
+    const auto check = [&](int first_cluster, int end_cluster, const auto& value) {
+        const int first = hierarchy.first_vertex()[first_cluster],
+                  end = hierarchy.first_vertex()[end_cluster];
+        Eigen::MatrixXd functions(end - first, rank), fields(end - first, rank);
+        for (int k = first; k < end; ++k) {
+            const int v = hierarchy.vertices()[k];
+            for (int b = 0; b < rank; ++b) {
+                functions(k - first, b) = value(v, b);
+                fields(k - first, b) = b == 0 ? 1.0 : grids.points[v][b - 1];
+            }
+        }
+        EXPECT_TRUE((functions.transpose() * functions).isIdentity(1e-5));
+        const Eigen::MatrixXd rest = fields - functions * (functions.transpose() * fields);
+        EXPECT_LT(rest.norm(), 1e-5 * fields.norm());
+    };
+    for (int c = 0; c < hierarchy.cluster_count(); ++c)
+        check(c, c + 1, [&](int v, int b) { return double(hierarchy.functions()[v][b]); });
+    for (const ClusterHierarchy::Range& range : hierarchy.clusters_of_region())
+        check(range.first, range.end, [&](int v, int b) {
+            const auto& T = hierarchy.transfers()[hierarchy.cluster_of()[v]].entry;
+            double sum = 0.0;
+            for (int a = 0; a < rank; ++a)
+                sum += double(T[a][b]) * double(hierarchy.functions()[v][a]);
+            return sum;
+        });
+}
+
+TEST(ClusterHierarchy, RepresentsAffineFieldsOfASurface)
 {
     Grids grids;
     grids.add(70, 50);
     for (EmbeddedPoint& p : grids.points)
         p[2] = 0.0;
-    const ClusterHierarchy hierarchy = grids.hierarchy();
-    ASSERT_EQ(hierarchy.levels().size(), 2u);
-    for (const ClusterHierarchy::Level& level : hierarchy.levels())
-        for (int cluster = 0; cluster < level.cluster_count; ++cluster) {
-            std::vector<int> members;
-            for (int c = level.first_of_cluster[cluster]; c < level.end_of_cluster[cluster]; ++c)
-                for (int k = hierarchy.first_vertex()[c]; k < hierarchy.first_vertex()[c + 1]; ++k)
-                    members.push_back(hierarchy.vertices()[k]);
-            Eigen::MatrixXd functions(members.size(), 3), fields(members.size(), 3);
-            for (int k = 0; k < int(members.size()); ++k) {
-                const int v = members[k];
-                const auto& T = level.transfer[hierarchy.cluster_of()[v]].entry;
-                for (int b = 0; b < 3; ++b) {
-                    functions(k, b) = 0.0;
-                    for (int a = 0; a < 3; ++a)
-                        functions(k, b) += double(T[a][b]) * double(hierarchy.functions()[v][a]);
-                }
-                fields.row(k) << 1.0, grids.points[v][0], grids.points[v][1];
-            }
-            EXPECT_TRUE((functions.transpose() * functions).isIdentity(1e-5));
-            const Eigen::MatrixXd rest = fields - functions * (functions.transpose() * fields);
-            EXPECT_LT(rest.norm(), 1e-5 * fields.norm());
-        }
+    expect_affine_fields(grids, Extent::Surface, 28);
+}
+
+TEST(ClusterHierarchy, RepresentsAffineFieldsOfAVolume)
+{
+    Grids grids;
+    grids.add(100, 90);
+    for (int v = 0; v < int(grids.points.size()); ++v)
+        grids.points[v][2] = 0.01 * (v * 7 % 19);
+    expect_affine_fields(grids, Extent::Volume, 36); // regions of 256 vertices: 71 of 128 would be too many
 }
 
 TEST(HessianPattern, FindsEveryEntryAndNoOther)

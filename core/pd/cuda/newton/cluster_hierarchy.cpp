@@ -10,21 +10,20 @@ namespace toile {
 
 namespace {
 
-/// Level of a ClusterTree with clusters of kClusterSize, and the distance of levels of kChildren.
-constexpr int kFirstTreeLevel = 3, kTreeLevels = 4;
-static_assert(ClusterTree::kLeaf << kFirstTreeLevel == ClusterHierarchy::kClusterSize);
-static_assert(1 << kTreeLevels == ClusterHierarchy::kChildren);
-
-using Matrix = Eigen::Matrix<double, ClusterHierarchy::kFunctions, ClusterHierarchy::kFunctions>;
+/// Levels of a ClusterTree from leaves to clusters, and from these to parents of blocks.
+constexpr int kClusterLevel = 3, kBlockLevels = 4;
+static_assert(ClusterTree::kLeaf << kClusterLevel == ClusterHierarchy::kClusterSize);
+static_assert(1 << kBlockLevels == ClusterHierarchy::kBlockClusters);
 
 /// Functions of cluster c of a tree level as combinations of those of its ancestor `rise` levels above.
-Matrix transfer_of(const ClusterBasis& basis, int tree_level, int c, int rise)
+Eigen::MatrixXd transfer_of(const ClusterBasis& basis, int tree_level, int c, int rise)
 {
-    using Stored = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-    Matrix product = Matrix::Identity();
+    using Stored = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+    const int rank = basis.rank();
+    Eigen::MatrixXd product = Eigen::MatrixXd::Identity(rank, rank);
     for (int k = 0; k < rise; ++k) {
         const int id = basis.tree().first_of_level(tree_level + k) + (c >> k);
-        product = product * Stored(basis.transfers().data() + 9 * size_t(id));
+        product = product * Stored(basis.transfers().data() + size_t(rank * rank) * size_t(id), rank, rank);
     }
     return product;
 }
@@ -32,8 +31,8 @@ Matrix transfer_of(const ClusterBasis& basis, int tree_level, int c, int rise)
 } // namespace
 
 ClusterHierarchy::ClusterHierarchy(View<const EmbeddedPoint> points, const BlockMatrix& blocks,
-                                   const SparseMatrix& isotropic)
-    : cluster_of_(points.size(), -1), functions_(points.size(), PaddedVec3(0.0F)), levels_(1)
+                                   const SparseMatrix& isotropic, Extent extent)
+    : extent_(extent), cluster_of_(points.size(), -1), functions_(points.size(), PaddedVec3(0.0F))
 {
     std::vector<int> others;
     const std::vector<unsigned char> none(points.size(), 0);
@@ -43,49 +42,56 @@ ClusterHierarchy::ClusterHierarchy(View<const EmbeddedPoint> points, const Block
         else
             others.insert(others.end(), component.begin(), component.end());
     add_others(others);
-    for (int level = 0; level < int(levels_.size()); ++level)
-        find_blocks(level);
+    find_neighbours(blocks, isotropic);
 }
 
 void ClusterHierarchy::add_component(View<const EmbeddedPoint> points, std::vector<int> vertices)
 {
-    const ClusterTree tree(points, std::move(vertices));
+    const ClusterTree tree(points, std::move(vertices), extent_);
     const ClusterBasis basis(tree, points);
-    const int base = std::min(kFirstTreeLevel, tree.level_count() - 1);
-    const int first_cluster = cluster_count(), slots = ClusterTree::kLeaf << base;
-    for (int c = 0; c < tree.level_size(base); ++c) {
+    const int level = std::min(kClusterLevel, tree.level_count() - 1);
+    const int first_cluster = cluster_count(), count = tree.level_size(level);
+    const int slots = ClusterTree::kLeaf << level;
+    for (int c = 0; c < count; ++c) {
         for (int slot = c * slots; slot < std::min((c + 1) * slots, tree.nodes().size()); ++slot) {
             const int v = tree.nodes()[slot];
             if (v < 0)
                 continue;
-            const int leaf = slot / ClusterTree::kLeaf;
-            const Eigen::Map<const Eigen::Vector3d> of_leaf(basis.leaves().data() + 3 * size_t(slot));
-            functions_[v] = padded(Vec3(transfer_of(basis, 0, leaf, base).transpose() * of_leaf));
+            const Eigen::Map<const Eigen::VectorXd> of_leaf(
+                basis.leaves().data() + size_t(function_count()) * size_t(slot), function_count());
+            const Eigen::VectorXd values =
+                transfer_of(basis, 0, slot / ClusterTree::kLeaf, level).transpose() * of_leaf;
+            for (int a = 0; a < function_count(); ++a)
+                functions_[v].value[a] = float(values[a]);
             cluster_of_[v] = cluster_count();
             vertices_.push_back(v);
         }
         first_vertex_.push_back(int(vertices_.size()));
+        block_of_.push_back(block_count() + c / kBlockClusters);
     }
+    for (int c = 0; c < count; c += kBlockClusters)
+        first_of_block_.push_back(first_cluster + std::min(c + kBlockClusters, count));
+    region_of_.resize(cluster_count(), -1);
+    transfers_.resize(cluster_count());
+    if (count <= kBlockClusters)
+        return;
 
-    for (int level = 0, tree_level = base;; ++level, tree_level += kTreeLevels) {
-        if (level == int(levels_.size()))
-            levels_.emplace_back();
-        Level& to = levels_[level];
-        to.cluster_of.resize(first_cluster, -1); // of components with fewer levels
-        to.transfer.resize(first_cluster);
-        for (int c = 0; c < tree.level_size(base); ++c) {
-            const Matrix transfer = transfer_of(basis, base, c, tree_level - base);
-            Transfer stored;
-            for (int a = 0; a < kFunctions; ++a)
-                for (int b = 0; b < kFunctions; ++b)
-                    stored.entry[a][b] = float(transfer(a, b));
-            to.transfer.push_back(stored);
-            to.cluster_of.push_back(to.cluster_count + (c >> (tree_level - base)));
-        }
-        to.cluster_count += tree.level_size(tree_level);
-        if (tree.level_size(tree_level) <= kChildren || level + 1 == kMaxLevels)
-            break;
+    int rise = 1;
+    while (tree.level_size(level + rise) * unknown_count() > kMaxUnknowns)
+        ++rise;
+    for (int c = 0; c < count; ++c) {
+        const int cluster = first_cluster + c;
+        if (c % (1 << rise) == 0)
+            clusters_of_region_.push_back({cluster, cluster});
+        ++clusters_of_region_.back().end;
+        region_of_[cluster] = region_count() - 1;
+        const Eigen::MatrixXd transfer = transfer_of(basis, level, c, rise);
+        for (int a = 0; a < function_count(); ++a)
+            for (int b = 0; b < function_count(); ++b)
+                transfers_[cluster].entry[a][b] = float(transfer(a, b));
     }
+    component_of_.resize(region_count(), component_count());
+    first_region_.push_back(region_count());
 }
 
 void ClusterHierarchy::add_others(const std::vector<int>& vertices)
@@ -98,37 +104,29 @@ void ClusterHierarchy::add_others(const std::vector<int>& vertices)
         }
         first_vertex_.push_back(int(vertices_.size()));
     }
-    for (Level& level : levels_) {
-        level.cluster_of.resize(cluster_count(), -1);
-        level.transfer.resize(cluster_count());
-    }
+    block_of_.resize(cluster_count(), -1);
+    region_of_.resize(cluster_count(), -1);
+    transfers_.resize(cluster_count());
 }
 
-/// Groups the clusters of a level: those of one parent, and those without any.
-void ClusterHierarchy::find_blocks(int level)
+void ClusterHierarchy::find_neighbours(const BlockMatrix& blocks, const SparseMatrix& isotropic)
 {
-    Level& of = levels_[level];
-    of.first_of_cluster.assign(of.cluster_count, -1);
-    of.end_of_cluster.assign(of.cluster_count, 0);
-    std::vector<int> parent(of.cluster_count, -1);
+    first_neighbour_.assign(1, 0);
     for (int c = 0; c < cluster_count(); ++c) {
-        const int cluster = of.cluster_of[c];
-        if (cluster < 0)
-            continue;
-        if (of.first_of_cluster[cluster] < 0)
-            of.first_of_cluster[cluster] = c;
-        of.end_of_cluster[cluster] = c + 1;
-        if (level + 1 < int(levels_.size()))
-            parent[cluster] = levels_[level + 1].cluster_of[c];
+        std::vector<int> found;
+        for (int k = first_vertex_[c]; block_of_[c] >= 0 && k < first_vertex_[c + 1]; ++k) {
+            const int i = vertices_[k];
+            found.push_back(c);
+            for (const int j : blocks.columns(i))
+                found.push_back(cluster_of_[j]);
+            for (SparseMatrix::InnerIterator entry(isotropic, i); entry; ++entry)
+                found.push_back(cluster_of_[int(entry.col())]);
+            std::sort(found.begin(), found.end());
+            found.erase(std::unique(found.begin(), found.end()), found.end());
+        }
+        neighbours_.insert(neighbours_.end(), found.begin(), found.end());
+        first_neighbour_.push_back(int(neighbours_.size()));
     }
-    for (int k = 0; k < of.cluster_count; ++k) {
-        const bool begins = k == 0 || parent[k] != parent[k - 1] || of.slot_of.back() + 1 == kChildren;
-        if (begins)
-            of.first_of_block.push_back(k);
-        of.block_of.push_back(int(of.first_of_block.size()) - 1);
-        of.slot_of.push_back(k - of.first_of_block.back());
-    }
-    of.first_of_block.push_back(of.cluster_count);
 }
 
 } // namespace toile

@@ -9,57 +9,75 @@
 
 namespace toile {
 
-/// Nested clusters of 64, 1024, 16384 and so on vertices, and on each of them three functions, close to 1 and
-/// two coordinates: the coarse spaces of an additive preconditioner. Functions and clusters are those of
-/// ClusterTree and ClusterBasis. A cluster lies in one connected component of a matrix.
+/// Clusters of vertices, nested regions of clusters, and on each of both three or four functions, close to 1
+/// and the coordinates along the axes of its extent: the coarse spaces of an additive preconditioner.
+/// Functions and clusters are those of ClusterTree and ClusterBasis.
 ///
-/// The clusters of a level form blocks, up to 16 children of one parent each, whose coupling a solver inverts
-/// exactly. Levels end where a component has one block. The rest of the last blocks is shared with other
-/// components.
+/// A cluster has up to 64 vertices of one connected component of a matrix. Up to 16 of them with one parent
+/// form a *block*. A component of several blocks also has *regions*: clusters of 128, 256 or more vertices,
+/// as small as is possible with up to 768 unknowns, three a function. A solver inverts the couplings within a
+/// block, and those between all regions of a component.
 class ClusterHierarchy {
 public:
-    static constexpr int kChildren = 16;    ///< of a cluster, and clusters of a block
-    static constexpr int kClusterSize = 64; ///< vertices of a cluster of level 0
-    static constexpr int kMaxLevels = 5;
-    static constexpr int kFunctions = 3;
+    static constexpr int kClusterSize = 64;   ///< vertices
+    static constexpr int kBlockClusters = 16; ///< clusters of a block
+    static constexpr int kMaxUnknowns = 768;  ///< of the regions of a component
+    static constexpr int kMaxFunctions = 4;
 
-    /// Functions of a cluster of level 0 as combinations of those of its ancestor: column by column.
+    /// Functions of a cluster as combinations of those of its region.
     struct Transfer {
-        float entry[kFunctions][kFunctions] = {};
+        float entry[kMaxFunctions][kMaxFunctions] = {};
     };
 
-    struct Level {
-        int cluster_count = 0;
-        std::vector<int> cluster_of;                       ///< [clusters of level 0] the ancestor; -1: none
-        std::vector<Transfer> transfer;                    ///< [clusters of level 0]
-        std::vector<int> first_of_cluster, end_of_cluster; ///< [clusters] its descendants of level 0
-        std::vector<int> block_of, slot_of; ///< [clusters] its block of this level, and its place there
-        std::vector<int> first_of_block;    ///< [blocks + 1] clusters
-        int block_count() const { return int(first_of_block.size()) - 1; }
-    };
-
-    /// @param points     [vertices] undeformed positions
+    /// @param points  [vertices] undeformed positions
     /// @param blocks, isotropic  patterns that connect vertices
     ClusterHierarchy(View<const EmbeddedPoint> points, const BlockMatrix& blocks,
-                     const SparseMatrix& isotropic);
+                     const SparseMatrix& isotropic, Extent extent);
 
-    /// Vertices of clusters of level 0; the last ones may hold vertices of small components, whose functions
-    /// are zero.
+    int function_count() const { return rank_of(extent_); }
+    int unknown_count() const { return 3 * function_count(); } ///< of a cluster or region
+
+    /// The last clusters may hold vertices of small components, whose functions are zero: they belong to no
+    /// block.
+    int cluster_count() const { return int(first_vertex_.size()) - 1; }
     const std::vector<int>& first_vertex() const { return first_vertex_; } ///< [clusters + 1] into vertices()
     const std::vector<int>& vertices() const { return vertices_; }
-    int cluster_count() const { return int(first_vertex_.size()) - 1; }     ///< of level 0, these included
     const std::vector<int>& cluster_of() const { return cluster_of_; }      ///< [vertices]
-    const std::vector<PaddedVec3>& functions() const { return functions_; } ///< [vertices] of level 0
-    const std::vector<Level>& levels() const { return levels_; }
+    const std::vector<PaddedVec3>& functions() const { return functions_; } ///< [vertices] of its cluster
+
+    /// Clusters of blocks that entries couple with a cluster, itself included, ascending.
+    const std::vector<int>& first_neighbour() const { return first_neighbour_; } ///< [clusters + 1]
+    const std::vector<int>& neighbours() const { return neighbours_; }
+
+    int block_count() const { return int(first_of_block_.size()) - 1; }
+    const std::vector<int>& first_of_block() const { return first_of_block_; } ///< [blocks + 1] clusters
+    const std::vector<int>& block_of() const { return block_of_; }             ///< [clusters] -1: none
+
+    int region_count() const { return int(clusters_of_region_.size()); }
+    int component_count() const { return int(first_region_.size()) - 1; }  ///< with regions
+    const std::vector<int>& first_region() const { return first_region_; } ///< [components + 1]
+    const std::vector<int>& component_of() const { return component_of_; } ///< [regions]
+    const std::vector<int>& region_of() const { return region_of_; }       ///< [clusters] -1: none
+    const std::vector<Transfer>& transfers() const { return transfers_; }  ///< [clusters]
+
+    struct Range {
+        int first, end;
+    };
+    const std::vector<Range>& clusters_of_region() const { return clusters_of_region_; }
 
 private:
     void add_component(View<const EmbeddedPoint> points, std::vector<int> vertices);
     void add_others(const std::vector<int>& vertices);
-    void find_blocks(int level);
+    void find_neighbours(const BlockMatrix& blocks, const SparseMatrix& isotropic);
 
+    Extent extent_;
     std::vector<int> first_vertex_{0}, vertices_, cluster_of_;
     std::vector<PaddedVec3> functions_;
-    std::vector<Level> levels_;
+    std::vector<int> first_neighbour_, neighbours_;
+    std::vector<int> first_of_block_{0}, block_of_;
+    std::vector<int> first_region_{0}, component_of_, region_of_;
+    std::vector<Transfer> transfers_;
+    std::vector<Range> clusters_of_region_;
 };
 
 } // namespace toile

@@ -11,11 +11,11 @@
 namespace toile {
 
 DeviceNewton::DeviceNewton(const CudaSpace& space, View<const EmbeddedPoint> points,
-                           const BlockMatrix& blocks, const SparseMatrix& isotropic, DeviceEnergies& energies,
-                           DeviceSolver& global_solver)
+                           const BlockMatrix& blocks, const SparseMatrix& isotropic, Extent extent,
+                           DeviceEnergies& energies, DeviceSolver& global_solver)
     : space_(space), energies_(energies), global_solver_(global_solver),
-      solver_(space, points, blocks, isotropic, energies), gradient_(space, "newton/gradient", points.size()),
-      trial_x_(space, "newton/trial_x", points.size()),
+      solver_(space, points, blocks, isotropic, extent, energies),
+      gradient_(space, "newton/gradient", points.size()), trial_x_(space, "newton/trial_x", points.size()),
       trial_gradient_(space, "newton/trial_gradient", points.size()),
       kept_(space, "newton/kept", points.size()),
       energy_(space, "newton/energy", points.size() + energies.partial_count()),

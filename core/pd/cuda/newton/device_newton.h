@@ -28,8 +28,10 @@ public:
     /// @param space, energies, global_solver  borrowed
     /// @param points  [vertices] undeformed positions
     /// @param blocks, isotropic  pattern of the Hessian, see HessianPattern
+    /// @param extent  of the points
     DeviceNewton(const CudaSpace& space, View<const EmbeddedPoint> points, const BlockMatrix& blocks,
-                 const SparseMatrix& isotropic, DeviceEnergies& energies, DeviceSolver& global_solver);
+                 const SparseMatrix& isotropic, Extent extent, DeviceEnergies& energies,
+                 DeviceSolver& global_solver);
 
     /// Takes other fixed vertices.
     void set_fixed(const std::vector<unsigned char>& fixed) { solver_.set_fixed(fixed); }

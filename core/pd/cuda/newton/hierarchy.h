@@ -3,16 +3,17 @@
 #include <vector>
 
 #include "core/compute/cuda/array.h"
+#include "core/linear/cuda/batched_inverses.h"
 #include "core/pd/cuda/newton/hierarchy_kernels.h"
 
 namespace toile {
 
-/// Coarse part of a preconditioner on a GPU: the additive hierarchy
+/// Coarse part of a preconditioner on a GPU: with the functions p of clusters and q of regions
+/// (ClusterHierarchy),
 ///
-///   sum_l P_l D_l^-1 P_l^T
+///   p D^-1 p^T + q E^-1 q^T,
 ///
-/// over the levels of a ClusterHierarchy, D_l the blocks of the Galerkin matrix P_l^T K P_l. It needs no
-/// large factor, and its cost per vertex does not grow.
+/// D the blocks of p^T K p, and E those of q^T K q that belong to one component.
 class DeviceHierarchy {
 public:
     /// @param space  borrowed
@@ -33,24 +34,20 @@ public:
     int cluster_count() const { return first_vertex_.size() - 1; }
 
 private:
-    struct LevelArrays {
-        LevelArrays(const CudaSpace& space, const ClusterHierarchy::Level& level);
-        HierarchyView::Level view(int first_item) const;
-
-        DeviceArray<int> cluster_of, first_of_cluster, end_of_cluster, block_of, slot_of, first_of_block;
-        DeviceArray<ClusterHierarchy::Transfer> transfer;
-        int block_count;
-    };
-    HierarchyView view() const;
+    HierarchyView view();
 
     const CudaSpace& space_;
+    int functions_of_cluster_;
     std::vector<PaddedVec3> functions_on_host_;
-    DeviceArray<int> first_vertex_, vertices_, cluster_of_, level_of_item_, first_of_level_;
+    DeviceArray<int> first_vertex_, vertices_, cluster_of_;
     DeviceArray<PaddedVec3> functions_;
-    std::vector<LevelArrays> levels_;
-    std::vector<int> cluster_counts_;      ///< [levels]
-    DeviceArray<float> panels_, inverses_; ///< see AssembleClusters, MultiplyInverses
-    DeviceArray<float> restricted_, solution_;
+    DeviceArray<int> first_neighbour_, neighbours_, first_of_block_, block_of_;
+    DeviceArray<int> first_region_, component_of_, region_of_;
+    DeviceArray<ClusterHierarchy::Transfer> transfers_;
+    DeviceArray<ClusterHierarchy::Range> clusters_of_region_;
+    BatchedInverses inverses_;                                 ///< see HierarchyView
+    DeviceArray<double> couplings_;                            ///< see AssembleClusters
+    DeviceArray<float> restricted_, of_clusters_, of_regions_; ///< see MultiplyInverses
 };
 
 } // namespace toile

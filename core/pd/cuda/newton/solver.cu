@@ -7,9 +7,9 @@ namespace toile {
 
 DeviceHessianSolver::DeviceHessianSolver(const CudaSpace& space, View<const EmbeddedPoint> points,
                                          const BlockMatrix& blocks, const SparseMatrix& isotropic,
-                                         DeviceEnergies& energies)
+                                         Extent extent, DeviceEnergies& energies)
     : space_(space), hessian_(space, HessianPattern(blocks, isotropic), energies),
-      hierarchy_(space, ClusterHierarchy(points, blocks, isotropic)), fixed_(space, "newton/fixed"),
+      hierarchy_(space, ClusterHierarchy(points, blocks, isotropic, extent)), fixed_(space, "newton/fixed"),
       first_part_(space, "newton/first_part", points.size()),
       second_part_(space, "newton/second_part", points.size()), x_(space, "newton/x", points.size()),
       r_(space, "newton/r", points.size()), z_(space, "newton/z", points.size()),

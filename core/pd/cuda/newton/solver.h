@@ -19,8 +19,9 @@ public:
     /// @param space, energies  borrowed
     /// @param points  [vertices] undeformed positions
     /// @param blocks, isotropic  pattern of the Hessian, see HessianPattern
+    /// @param extent  of the points
     DeviceHessianSolver(const CudaSpace& space, View<const EmbeddedPoint> points, const BlockMatrix& blocks,
-                        const SparseMatrix& isotropic, DeviceEnergies& energies);
+                        const SparseMatrix& isotropic, Extent extent, DeviceEnergies& energies);
 
     /// Takes other fixed vertices.
     void set_fixed(const std::vector<unsigned char>& fixed);

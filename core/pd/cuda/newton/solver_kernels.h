@@ -195,7 +195,7 @@ struct BeginNewtonPcg {
     {
         if (c == 0 && block.thread == 0)
             state[0] = {};
-        const int i = clusters.vertex(c, block.thread);
+        const int i = clusters.clusters.vertex(c, block.thread);
         PaddedVec3 r(0.0F);
         if (i >= 0) {
             if (fixed[i] == 0)
@@ -222,7 +222,7 @@ struct Precondition {
     template <typename Block>
     TOILE_HD Prologue prologue(int c, const Block& block) const
     {
-        const int i = clusters.vertex(c, block.thread);
+        const int i = clusters.clusters.vertex(c, block.thread);
         return {i, i >= 0 ? DiagonalInverse{first[i], second[i]} : DiagonalInverse{}};
     }
     template <typename Block>
@@ -256,7 +256,7 @@ struct AdvanceNewtonPcg {
     template <typename Block>
     TOILE_HD Prologue prologue(int c, const Block& block) const
     {
-        const int i = clusters.vertex(c, block.thread);
+        const int i = clusters.clusters.vertex(c, block.thread);
         if (i < 0)
             return {i, {}, {}, {}, {}, {}, {}};
         return {i, fields.p[i], fields.Kp[i], fields.x[i], fields.r[i], fields.z[i], fields.Kz[i]};
