@@ -50,6 +50,8 @@ int bench_paper(const BenchOptions& options)
         update_tables(options.output, tables);
     };
     calls.failed = [](const std::string& error) { std::cerr << "toile: error: " << error << std::endl; };
+    calls.has_sample =
+        !options.quick && options.frames.value_or(paper::kSampleFrame + 1) > paper::kSampleFrame;
     calls.goes_on = [&] { return !interrupt.requested(); };
     const bool has_all = paper::measure_table1(options.scenes, calls);
     write_tables(options.output, tables);

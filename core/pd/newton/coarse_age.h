@@ -1,5 +1,4 @@
 #pragma once
-#include <cstdlib>
 
 #include <algorithm>
 
@@ -11,7 +10,7 @@ namespace toile {
 class CoarseAge {
 public:
     /// @param price  of making the coarse part [iterations]
-    explicit CoarseAge(int price) : price_(getenv("T_PRICE") ? atoi(getenv("T_PRICE")) : price) {}
+    explicit CoarseAge(int price) : price_(price) {}
 
     /// To be called once for each direction. @return true if the coarse part is to be made
     bool is_over(bool is_first_of_minimisation)

@@ -120,7 +120,7 @@ bool measure_table1(const std::vector<std::filesystem::path>& scenes, const Tabl
         std::vector<Vec3> converged;
         for (const TableMethod method : {TableMethod::Converged, TableMethod::ToTheError,
                                          TableMethod::QuadratureByMove, TableMethod::JacobiByMove}) {
-            if (!works || !calls.goes_on())
+            if (!works || !calls.goes_on() || (method == TableMethod::Converged && !calls.has_sample))
                 continue;
             try {
                 TableRow row = calls.measure(scene, method);

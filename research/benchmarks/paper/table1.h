@@ -39,6 +39,7 @@ struct TableCalls {
     std::function<void(const std::vector<TableRow>& rows)> finished; ///< all so far, after each row
     std::function<void(const std::string& error)> failed;            ///< names scene and method
     std::function<bool()> goes_on;                                   ///< asked before each row
+    bool has_sample = true; ///< the runs reach kSampleFrame; false: no errors
 };
 
 /// Measures scenes by all methods, which have a row each but TableMethod::Converged. Where a row fails, the

@@ -57,7 +57,7 @@ double max_distance(const World& a, const World& b)
 
 TEST_F(DeviceSoftBodiesTest, MoveAsOnTheCpu)
 {
-    const std::string exact = R"("velocity_tolerance": 1e-4, "substeps": 4)";
+    const std::string exact = R"("velocity_tolerance": 1e-5, "substeps": 4)";
     const std::string held = R"(, "attachments": [{"cloth": "a", "select": {"nearest": [[0, 0, 0]]}}])";
     World cpu = world_on(Backend::Cpu, exact, held), gpu = world_on(Backend::Cuda, exact, held);
     ASSERT_NE(gpu.device(), nullptr);

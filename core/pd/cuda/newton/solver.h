@@ -13,8 +13,8 @@ namespace toile {
 /// HessianSolver on a GPU, with a DeviceHierarchy as the coarse part of its preconditioner.
 class DeviceHessianSolver {
 public:
-    /// Iterations that the matrices of the hierarchy cost, about: 45 to 60 on an H200.
-    static constexpr int kPriceOfCoarse = 50;
+    /// Iterations that the matrices of the hierarchy cost, about: 30 to 35 on an H200.
+    static constexpr int kPriceOfCoarse = 35;
 
     /// @param space, energies  borrowed
     /// @param points  [vertices] undeformed positions
