@@ -86,6 +86,16 @@ struct KnownTrajectories {
     }
 };
 
+/// Makes the trajectory of v unknown.
+struct ForgetKnown {
+    KnownTrajectories known; ///< out
+    TOILE_HD void operator()(int v) const
+    {
+        known.motion[v] = Vec3::Constant(1e100); // far from any displacement, and its square is finite
+        known.radius[v] = 0.0;
+    }
+};
+
 /// Sets the KnownTrajectories of a list that was found for displacements from x to `expected`, with slack.
 struct RecordExpected {
     View<const Vec3> x, expected; ///< [vertices] [m]

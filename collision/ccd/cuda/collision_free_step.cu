@@ -37,6 +37,11 @@ void DeviceCollisionFreeStep::begin(View<const Vec3> x, View<const Vec3> expecte
     expected_count_ = complete_count_ = count_;
 }
 
+void DeviceCollisionFreeStep::forget_known()
+{
+    parallel_for(space_, "collision/forget_known", known_motion_.size(), ForgetKnown{known()});
+}
+
 View<const BlockedPair> DeviceCollisionFreeStep::query_all(View<const Vec3> x)
 {
     parallel_sum(space_, "collision/device_out_of_bounds", x.size(), 0,

@@ -22,8 +22,12 @@ public:
     void begin(View<const Vec3> x, View<const Vec3> expected, View<const double> slack,
                View<const NearPair> found);
 
+    /// After a search has failed: takes all trajectories for unknown until the next search.
+    void forget_known();
+
     /// First update: all vertices move to x [vertices] [m], on the device. Empty if CollisionFreeStep::limit
     /// would not change x, up to the rounding of fractions. Waits.
+    /// @throws TooManyPairs, as update(); forget_known() must follow
     View<const BlockedPair> query_all(View<const Vec3> x);
 
     /// Waits for the result.

@@ -53,6 +53,12 @@ DeviceClothContact::DeviceClothContact(const CudaSpace& space, ContactSoup given
 void DeviceClothContact::forget()
 {
     ClothContact::forget();
+    forget_motion();
+}
+
+/// Forgets how far vertices end from where they were expected.
+void DeviceClothContact::forget_motion()
+{
     deviation_.fill_zero();
     slack_.upload(std::vector<double>(slack_.size(), rules().slack().min));
 }
@@ -86,7 +92,9 @@ void DeviceClothContact::begin_bodies(const StepStart& start, NearbyBodies& near
     StepStart on_host = start;
     on_host.x = soup().of_cloth(base);
     on_host.prediction = host_prediction_.view();
+    near_.set_limited(false); // bodies arrive on time, whatever they sweep through
     bodies().begin_step(on_host, near, carry_, fixed(), base);
+    near_.set_limited(true);
     base_.upload(base);
     end_.upload(base);
     const GuardOf guards = bodies().guards(base);
@@ -118,8 +126,22 @@ void DeviceClothContact::begin_search()
 void DeviceClothContact::end_search()
 {
     const StageScope stage("collision/near_pairs");
-    free_step_.begin(base_.view(), expected_.view(), slack_.view(), near_.end());
+    free_step_.begin(base_.view(), expected_.view(), slack_.view(), found_pairs());
     list_pressing();
+}
+
+/// Waits for the search. Where expected trajectories sweep through too much, it is repeated for cloth that
+/// stands: limit() finds the pairs of the others.
+View<const NearPair> DeviceClothContact::found_pairs()
+{
+    try {
+        return near_.end();
+    } catch (const TooManyPairs&) {
+        motion_.fill_zero();
+        forget_motion();
+        begin_search();
+        return near_.end();
+    }
 }
 
 FindPressing DeviceClothContact::find_pressing() const
@@ -187,6 +209,8 @@ bool DeviceClothContact::limit_motion(StepField x, StepField v, double dt,
         for (const int i : limiter_.moved())
             if (i < soup().first_body)
                 velocity[i] += (reached[i] - host_wanted_[i]) / dt;
+        for (size_t i = 0; i < host_requested_.size(); ++i) // what was taken back, before that
+            velocity[int(i)] += (host_wanted_[int(i)] - host_requested_[i]) / dt;
     }
     if (correction <= rules().ignored_correction())
         return false;
@@ -194,10 +218,51 @@ bool DeviceClothContact::limit_motion(StepField x, StepField v, double dt,
     return true;
 }
 
-/// See CollisionFreeStep::limit. If that changes x, host_wanted_ has the former x.
+/// See CollisionFreeStep::limit. If that changes x, host_wanted_ has the x that blocked pairs were limited
+/// from. Of motion that sweeps through too much, as from a minimiser that has lost its way, half is taken
+/// back until its pairs are few; that of fixed vertices, which follow a target, only if this does not help.
 double DeviceClothContact::limit(StepField x, const FindSupported& find_supported)
 {
+    constexpr int kHalvingsOfFree = 30, kMaxHalvings = 60;
     const StageScope stage("collision/collision_free_step");
+    host_requested_.clear();
+    double taken_back = 0.0;
+    for (int halvings = 0;; ++halvings)
+        try {
+            return std::max(taken_back, limit_blocked(x, find_supported));
+        } catch (const TooManyPairs&) {
+            free_step_.forget_known();
+            if (halvings == kMaxHalvings)
+                throw;
+            taken_back += take_half_back(x, halvings >= kHalvingsOfFree);
+        }
+}
+
+/// @return the largest part of a vertex' motion [m]
+double DeviceClothContact::take_half_back(StepField x, bool with_fixed)
+{
+    if (!has_base_)
+        copy_base();
+    const View<Vec3> end = x.change_on_host(), wanted = host_wanted_.view();
+    const View<const Vec3> base = host_base_.view();
+    if (host_requested_.empty())
+        host_requested_.assign(end.begin(), end.end());
+    std::copy(base.begin(), base.end(), wanted.begin());
+    double largest = 0.0;
+    for (int v = 0; v < end.size(); ++v) {
+        if (fixed()[v] != 0 && !with_fixed) {
+            wanted[v] = end[v];
+            continue;
+        }
+        const Vec3 half = 0.5 * (end[v] - base[v]);
+        largest = std::max(largest, half.norm());
+        wanted[v] = end[v] = base[v] + half;
+    }
+    return largest;
+}
+
+double DeviceClothContact::limit_blocked(StepField x, const FindSupported& find_supported)
+{
     const View<const BlockedPair> blocked = free_step_.query_all(with_bodies(x.device()));
     mark_stopped(blocked);
     if (blocked.empty())
@@ -228,7 +293,7 @@ void DeviceClothContact::copy_base()
 }
 
 /// @param x            [vertices] on the device [m]
-/// @param was_limited  host_wanted_ has the requested positions
+/// @param was_limited  by limit(), from host_wanted_
 void DeviceClothContact::search_from(View<const Vec3> x, bool was_limited, bool goes_on)
 {
     if (was_limited)

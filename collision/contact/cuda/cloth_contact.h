@@ -33,6 +33,10 @@ private:
     void begin_bodies(const StepStart& start, NearbyBodies& near);
     View<const Vec3> with_bodies(View<const Vec3> x);
     double limit(StepField x, const FindSupported& find_supported);
+    double limit_blocked(StepField x, const FindSupported& find_supported);
+    double take_half_back(StepField x, bool with_fixed);
+    View<const NearPair> found_pairs();
+    void forget_motion();
     void copy_base();
     void begin_search();
     void search_from(View<const Vec3> x, bool was_limited, bool goes_on);
@@ -67,9 +71,11 @@ private:
     TrajectoryLimiter limiter_;
     bool has_base_ = false;             ///< host_base_ is that of the last search
     PinnedArray<Vec3> host_base_;       ///< [vertices] [m]
-    PinnedArray<Vec3> host_wanted_;     ///< [vertices] before the last limit() [m]
+    PinnedArray<Vec3> host_wanted_;     ///< [vertices] before the last limit(), halved if it has halved [m]
     PinnedArray<Vec3> host_prediction_; ///< [cloth] [m]
     std::vector<Vec3> host_end_;        ///< [vertices] of the last limit() [m]
+    std::vector<Vec3>
+        host_requested_; ///< [cloth] before the last limit() if it has taken half back; else empty
 };
 
 } // namespace toile::collision

@@ -59,6 +59,7 @@ public:
     }
 
     SoupView soup() const { return near_.soup(); }
+    void set_limited(bool is_limited) { near_.set_limited(is_limited); } ///< see DeviceNearPairs
 
 private:
     const CudaSpace& space_;

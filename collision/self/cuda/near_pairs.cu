@@ -26,12 +26,12 @@ constexpr double kHeadroom = 1.25;
 
 int with_headroom(long needed)
 {
-    const long max_size = std::numeric_limits<int>::max();
-    if (needed > max_size)
-        throw DeviceError("near pairs: " + std::to_string(needed) +
-                          " candidates are more than a search can hold; is the margin in metres?");
-    return int(std::min(long(kHeadroom * double(needed)), max_size));
+    return int(std::min(long(kHeadroom * double(needed)), long(std::numeric_limits<int>::max())));
 }
+
+/// Candidates that a search lists at most: of a vertex, and in small soups. Cloth at rest has 10 to 100 a
+/// vertex; each takes 13 bytes.
+constexpr long kMaxCandidatesOfVertex = 512, kMaxCandidatesOfFew = 1L << 22;
 
 /// Marks of prescribed vertices, among which there are no pairs; empty without any.
 std::vector<unsigned char> prescribed(View<const int> rigid)
@@ -80,6 +80,16 @@ void DeviceNearPairs::reserve(long candidates, long pairs)
     }
     if (pairs > pairs_.size())
         pairs_.resize(with_headroom(pairs));
+}
+
+void DeviceNearPairs::require_few(long candidates) const
+{
+    const long all = std::numeric_limits<int>::max();
+    const long few = std::max(kMaxCandidatesOfFew, kMaxCandidatesOfVertex * surface_.vertex_count());
+    if (candidates > (is_limited_ ? std::min(few, all) : all))
+        throw TooManyPairs("near pairs: " + std::to_string(candidates) + " candidates of " +
+                           std::to_string(surface_.vertex_count()) +
+                           " vertices are more than a search lists; is the margin in metres?");
 }
 
 void DeviceNearPairs::begin(View<const Vec3> x, const Trajectories& trajectories, double margin)
@@ -197,6 +207,7 @@ bool DeviceNearPairs::complete()
 {
     space_.synchronise();
     const SearchNumbers& numbers = numbers_[0];
+    require_few(numbers.candidates);
     if (ordered_surface_ == 0.0)
         ordered_surface_ = numbers.surface;
     is_worn_out_ = numbers.surface > kWornOut * ordered_surface_;
@@ -212,6 +223,7 @@ bool DeviceNearPairs::complete_near()
 {
     space_.synchronise();
     const SearchNumbers& numbers = numbers_[0];
+    require_few(numbers.candidates);
     const bool had_capacity = numbers.candidates <= near_capacity_ && numbers.pairs <= pairs_.size();
     if (!had_capacity) {
         near_capacity_ = std::max(near_capacity_, with_headroom(numbers.candidates));

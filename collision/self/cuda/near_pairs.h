@@ -2,10 +2,17 @@
 
 #include "collision/geometry/cuda/surface.h"
 #include "collision/self/cuda/nearby_kernels.h"
+#include "core/base/error.h"
 #include "core/compute/cuda/runtime/event.h"
 #include "core/compute/cuda/runtime/graph.h"
 
 namespace toile::collision {
+
+/// Trajectories sweep through each other, with more candidates than a search lists. Shorter ones have fewer.
+class TooManyPairs : public DeviceError {
+public:
+    using DeviceError::DeviceError;
+};
 
 /// NearPairs on a GPU: the same pairs in the same order, in double precision. Numbers differ from the CPU's
 /// in the last bits, and so may the presence of a pair within rounding of a limit. Every run gives the same
@@ -28,7 +35,7 @@ public:
     /// order of the trees, a new one is chosen. A repeated search of the same arrays is launched as one
     /// graph.
     /// @param x, trajectories  on the device
-    /// @throws DeviceError if the device lacks the memory, or there are 2^31 candidates
+    /// @throws TooManyPairs, DeviceError if the device lacks the memory
     View<const NearPair> find(View<const Vec3> x, const Trajectories& trajectories, double margin)
     {
         begin(x, trajectories, margin);
@@ -48,8 +55,12 @@ public:
     ///                        searches since find()
     /// @param count   number of marked vertices
     /// @param margin  [m] no larger than in find()
+    /// @throws as find()
     View<const NearPair> find_near(View<const Vec3> x, const Trajectories& trajectories, int count,
                                    double margin);
+
+    /// Whether searches throw TooManyPairs (default). Otherwise only memory limits them.
+    void set_limited(bool is_limited) { is_limited_ = is_limited; }
 
     /// Copies the first pairs of find() into `out`, before the call returns.
     void download(View<NearPair> out) const { pairs_.download_first(out); }
@@ -57,7 +68,7 @@ public:
     /// Variant of find() for recording in a graph: enqueues a search with the current capacity.
     void search(View<const Vec3> x, const Trajectories& trajectories, double margin);
     /// Waits. False if the capacity was too small: it has grown, and the same search, recorded anew, finds
-    /// all pairs.
+    /// all pairs. @throws TooManyPairs
     bool complete();
     /// Results of search() for later kernels: pairs [capacity] and their number [1], valid if it is not above
     /// the capacity.
@@ -96,6 +107,7 @@ private:
         }
     };
 
+    void require_few(long candidates) const;
     void search_begun();
     void count_edges_on(const CudaSpace& on);
     void list_candidates();
@@ -120,6 +132,7 @@ private:
     CudaGraph graph_;
     double ordered_surface_ = 0.0; ///< [m^2] in the first search after the order was chosen; 0: none yet
     bool is_worn_out_ = false;
+    bool is_limited_ = true;
 
     DeviceArray<int> counts_; ///< [vertices + edges + 1] candidates; the last stays 0
     DeviceArray<long> first_; ///< [vertices + edges + 1] offsets, sums of counts_

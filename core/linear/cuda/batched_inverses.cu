@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <string>
 
+#include "core/base/error.h"
 #include "core/compute/cuda/teams.cuh"
 
 namespace toile {
@@ -25,17 +27,19 @@ BatchedInverses::BatchedInverses(const CudaSpace& space, const std::vector<int>&
         const int tiles = block_count(sizes[m], MatrixBatch::kTile);
         matrices_on_host_[m] = {int(entries), MatrixBatch::kTile * int(tile_rows.size()), tiles};
         entries += long(tiles) * tiles * MatrixBatch::kTileSize;
-        TOILE_ASSERT(entries <= std::numeric_limits<int>::max());
-        tile_rows_from_.resize(std::max(int(tile_rows_from_.size()), tiles));
-        tile_pairs_from_.resize(tile_rows_from_.size());
+        if (entries > std::numeric_limits<int>::max())
+            throw DeviceError("inverses: " + std::to_string(sizes.size()) +
+                              " matrices have 2^31 entries or more; simulate fewer vertices");
+        tile_row_counts_.resize(std::max(int(tile_row_counts_.size()), tiles));
+        tile_pair_counts_.resize(tile_row_counts_.size());
         for (int i = 0; i < tiles; ++i) {
             tile_rows.push_back({m, i, i});
             for (int j = 0; j <= i; ++j)
                 tile_pairs.push_back({m, i, j});
         }
         for (int k = 0; k < tiles; ++k) {
-            tile_rows_from_[k] = int(tile_rows.size());
-            tile_pairs_from_[k] = int(tile_pairs.size());
+            tile_row_counts_[k] = int(tile_rows.size());
+            tile_pair_counts_[k] = int(tile_pairs.size());
         }
     }
     matrices_.upload(matrices_on_host_);
@@ -59,12 +63,12 @@ void BatchedInverses::invert()
     parallel_for(space_, "inverses/scales", scales_.size(), FindScales{batch, scales_.view()});
     parallel_for_blocks<ScaleTile::kThreads>(space_, "inverses/scale", tile_pairs_.size(), 0,
                                              ScaleTile{batch, scales_.view(), tile_pairs_.view()});
-    for (int k = 0; k < int(tile_rows_from_.size()); ++k) {
-        parallel_for_blocks<SweepColumn::kThreads>(space_, "inverses/sweep_column", tile_rows_from_[k],
+    for (int k = 0; k < int(tile_row_counts_.size()); ++k) {
+        parallel_for_blocks<SweepColumn::kThreads>(space_, "inverses/sweep_column", tile_row_counts_[k],
                                                    SweepColumn::kBytes,
                                                    SweepColumn{batch, k, products_.view(), columns_.view()});
         parallel_for_blocks<SweepTile::kThreads>(
-            space_, "inverses/sweep", tile_pairs_from_[k], SweepTile::kBytes,
+            space_, "inverses/sweep", tile_pair_counts_[k], SweepTile::kBytes,
             SweepTile{batch, k, products_.view(), columns_.view(), tile_pairs_.view()});
     }
     parallel_for_blocks<StoreInverse::kThreads>(space_, "inverses/store", tile_pairs_.size(), 0,

@@ -15,12 +15,19 @@ constexpr int kClusterLevel = 3, kBlockLevels = 4;
 static_assert(ClusterTree::kLeaf << kClusterLevel == ClusterHierarchy::kClusterSize);
 static_assert(1 << kBlockLevels == ClusterHierarchy::kBlockClusters);
 
+constexpr int kMaxFunctions = ClusterHierarchy::kMaxFunctions;
+
+/// Of as many rows and columns as a cluster has functions.
+using Matrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxFunctions, kMaxFunctions>;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxFunctions, 1>;
+
 /// Functions of cluster c of a tree level as combinations of those of its ancestor `rise` levels above.
-Eigen::MatrixXd transfer_of(const ClusterBasis& basis, int tree_level, int c, int rise)
+Matrix transfer_of(const ClusterBasis& basis, int tree_level, int c, int rise)
 {
     using Stored = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
     const int rank = basis.rank();
-    Eigen::MatrixXd product = Eigen::MatrixXd::Identity(rank, rank);
+    Matrix product = Matrix::Identity(rank, rank);
     for (int k = 0; k < rise; ++k) {
         const int id = basis.tree().first_of_level(tree_level + k) + (c >> k);
         product = product * Stored(basis.transfers().data() + size_t(rank * rank) * size_t(id), rank, rank);
@@ -59,7 +66,7 @@ void ClusterHierarchy::add_component(View<const EmbeddedPoint> points, std::vect
                 continue;
             const Eigen::Map<const Eigen::VectorXd> of_leaf(
                 basis.leaves().data() + size_t(function_count()) * size_t(slot), function_count());
-            const Eigen::VectorXd values =
+            const Vector values =
                 transfer_of(basis, 0, slot / ClusterTree::kLeaf, level).transpose() * of_leaf;
             for (int a = 0; a < function_count(); ++a)
                 functions_[v].value[a] = float(values[a]);
@@ -85,7 +92,7 @@ void ClusterHierarchy::add_component(View<const EmbeddedPoint> points, std::vect
             clusters_of_region_.push_back({cluster, cluster});
         ++clusters_of_region_.back().end;
         region_of_[cluster] = region_count() - 1;
-        const Eigen::MatrixXd transfer = transfer_of(basis, level, c, rise);
+        const Matrix transfer = transfer_of(basis, level, c, rise);
         for (int a = 0; a < function_count(); ++a)
             for (int b = 0; b < function_count(); ++b)
                 transfers_[cluster].entry[a][b] = float(transfer(a, b));

@@ -30,7 +30,8 @@ public:
     };
 
     /// @param points  [vertices] undeformed positions
-    /// @param blocks, isotropic  patterns that connect vertices
+    /// @param blocks, isotropic  patterns that connect vertices, symmetric
+    /// @param extent  of the points
     ClusterHierarchy(View<const EmbeddedPoint> points, const BlockMatrix& blocks,
                      const SparseMatrix& isotropic, Extent extent);
 
@@ -60,9 +61,11 @@ public:
     const std::vector<int>& region_of() const { return region_of_; }       ///< [clusters] -1: none
     const std::vector<Transfer>& transfers() const { return transfers_; }  ///< [clusters]
 
+    /// Consecutive clusters.
     struct Range {
         int first, end;
     };
+    /// [regions]
     const std::vector<Range>& clusters_of_region() const { return clusters_of_region_; }
 
 private:

@@ -32,6 +32,14 @@ struct HierarchyView {
     TOILE_HD int cluster_count() const { return first_vertex.size() - 1; }
     TOILE_HD int block_count() const { return first_of_block.size() - 1; }
 
+    TOILE_HD bool are_neighbours(int c, int d) const
+    {
+        for (int at = first_neighbour[c]; at < first_neighbour[c + 1]; ++at)
+            if (neighbours[at] == d)
+                return true;
+        return false;
+    }
+
     /// Vertex of a thread of cluster c, -1: none.
     TOILE_HD int vertex(int c, int thread) const
     {
@@ -45,8 +53,8 @@ struct HierarchyView {
 ///   K_ab = sum_ij f_a(i) f_b(j) K_ij,
 ///
 /// also in the matrix of its block. Of the Hessian's differences only what leaves a cluster acts on its
-/// constants: no stiff blocks cancel there. Contact with a cluster that is no neighbour acts as with
-/// something fixed.
+/// constants: no stiff blocks cancel there. Contact between clusters that are no neighbours acts on each as
+/// contact with something fixed.
 struct AssembleClusters {
     static constexpr int kSize = ClusterHierarchy::kClusterSize;
     static constexpr int kMaxFunctions = HierarchyView::kMaxFunctions;
@@ -122,17 +130,32 @@ private:
         });
         if (const int list = terms.list_of[v]; list >= 0)
             for (int e = 0; e < terms.rows.active_count[list]; ++e)
-                add_term(terms.rows.rows[terms.rows.first[list] + e], neighbour, sums);
+                add_term(terms.rows.rows[terms.rows.first[list] + e], c, neighbour, sums);
         return sums;
     }
-    TOILE_HD void add_term(const FrozenRow& term, int neighbour, RowSums& sums) const
+    TOILE_HD void add_term(const FrozenRow& term, int c, int neighbour, RowSums& sums) const
     {
         PaddedVec3 f(0.0F);
+        bool is_there = false;
         for (int k = 0; k < 4 && term.vertex[k] >= 0; ++k)
-            if (clusters.cluster_of[term.vertex[k]] == neighbour)
+            if (clusters.cluster_of[term.vertex[k]] == neighbour) {
                 f += term.weight[k] * clusters.functions[term.vertex[k]];
+                is_there = true;
+            }
+        if (!is_there || (neighbour != c && !are_neighbours(term.vertex)))
+            return;
         for (int b = 0; b < kMaxFunctions; ++b)
             sums.of[b] += double(term.self_weight * f[b]) * term.stiffness();
+    }
+    /// True if the clusters of all vertices of a term are neighbours of each other: only then its couplings
+    /// are kept, all of them or none, so that the matrices stay positive semi-definite.
+    TOILE_HD bool are_neighbours(const std::array<int, 4>& vertex) const
+    {
+        for (int k = 0; k < 4 && vertex[k] >= 0; ++k)
+            for (int l = 0; l < k; ++l)
+                if (!clusters.are_neighbours(clusters.cluster_of[vertex[k]], clusters.cluster_of[vertex[l]]))
+                    return false;
+        return true;
     }
 
     /// Entry `pair` of a coupling: sum over the cluster's vertices of function times row sum.
@@ -201,7 +224,7 @@ struct MultiplyInverses {
     static constexpr int kThreads = kGroups * kRows / 4;
     static constexpr int kColumns = 6; ///< of a group, loaded ahead
     static constexpr int kMaxSize = ClusterHierarchy::kMaxUnknowns;
-    static constexpr std::size_t kBytes = sizeof(float) * (kMaxSize + kRows + kGroups * kRows);
+    static constexpr std::size_t kBytes = sizeof(float) * (kMaxSize + kGroups * kRows);
 
     HierarchyView clusters;
     View<const float> restricted;        ///< [clusters][unknowns]

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "collision/check/find_crossings.h"
 #include "collision/contact/cpu/cloth_contact.h"
 #include "collision/contact/cuda/cloth_contact.h"
 #include "core/base/stages.h"
@@ -345,6 +346,58 @@ TEST_F(DeviceClothContactTest, ForgetsRepositionedCloth)
     sides.begin_step(made);
     fresh.begin_step(made);
     EXPECT_TRUE(are_same_bits(pairs_of(sides.device), pairs_of(fresh.device)));
+}
+
+/// Every vertex flies far through all others, as from a minimiser that has lost its way.
+TEST_F(DeviceClothContactTest, TakesBackMotionThatSweepsThroughTooMuch)
+{
+    Random random(65);
+    ClothCase made = random_cloth_case(random);
+    for (Vec3& end : made.expected)
+        end += 5.0 * random.point();
+    std::vector<Vec3> motion;
+    for (size_t v = 0; v < made.x.size(); ++v)
+        motion.push_back(made.expected[v] - made.x[v]);
+    DeviceArray<Vec3> start(space(), "test/x"), flight(space(), "test/motion");
+    DeviceArray<double> slack(space(), "test/slack");
+    start.upload(made.x);
+    flight.upload(motion);
+    slack.upload(made.slack);
+    DeviceNearPairs near(space(), made.triangles, made.x);
+    ASSERT_THROW(near.find(start.view(), {flight.view(), slack.view()}, kThickness), TooManyPairs);
+
+    for (const bool has_fixed : {false, true}) {
+        Sides sides(space(), made);
+        if (has_fixed) { // led to a target nearby
+            sides.fixed[0] = 1;
+            made.expected[0] = made.x[0] + Vec3(1e-6, 0.0, 0.0);
+        }
+        Field x(space(), made.x), prediction(space(), made.expected), end(space(), made.expected);
+        Field velocity(space(), std::vector<Vec3>(made.x.size(), Vec3::Zero()));
+        sides.device.begin_step({{},
+                                 {},
+                                 sides.ones,
+                                 sides.fixed,
+                                 sides.ones,
+                                 kDt,
+                                 {},
+                                 false,
+                                 {x.device(), prediction.device(), {}, {}, {}}},
+                                sides.no_bodies);
+        sides.device.end_search();
+        EXPECT_TRUE(sides.device.limit_motion(end, velocity, kDt, kNoneSupported));
+        const std::vector<Vec3> reached = end.values(), change = velocity.values();
+        EXPECT_EQ(find_crossings(made.triangles, reached).size(), 0u);
+        double moved = 0.0;
+        for (size_t v = 0; v < reached.size(); ++v) {
+            moved = std::max(moved, (reached[v] - made.x[v]).norm());
+            EXPECT_LT((change[v] - (reached[v] - made.expected[v]) / kDt).norm(), 1e-9);
+        }
+        if (has_fixed)
+            EXPECT_LT((reached[0] - made.expected[0]).norm(), 1e-9);
+        else
+            EXPECT_GT(moved, 1e-5);
+    }
 }
 
 } // namespace
