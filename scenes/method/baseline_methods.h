@@ -4,11 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "core/linear/cuda/solver.h"
+#include "core/linear/global_solver.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/pd/step/point_masses.h"
 #include "garment/energy/cloth_model.h"
 #include "scenes/format/scene.h"
+
+namespace toile {
+class CudaSpace;
+} // namespace toile
 
 namespace toile::scenes {
 

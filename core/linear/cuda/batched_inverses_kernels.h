@@ -70,6 +70,19 @@ struct TileThread {
     }
 };
 
+/// Calls visit(row, column of the matrix) for a thread's entries of a lower tile: of one on the diagonal,
+/// those that are not above it.
+template <typename Visit>
+TOILE_HD void for_lower_entries(const MatrixTile& tile, int thread, const Visit& visit)
+{
+    for (int k = thread; k < MatrixBatch::kTileSize; k += TileThread::kThreads) {
+        const int i = MatrixBatch::kTile * tile.row + k / MatrixBatch::kTile;
+        const int j = MatrixBatch::kTile * tile.column + k % MatrixBatch::kTile;
+        if (j <= i)
+            visit(i, j);
+    }
+}
+
 /// Scales of the rows to a unit diagonal, zero for rows without entries.
 struct FindScales {
     MatrixBatch batch;
@@ -97,18 +110,14 @@ struct ScaleTile {
     TOILE_HD void operator()(int item, const Block& block) const
     {
         const MatrixTile tile = tile_pairs[item];
-        const MatrixBatch::Matrix& m = batch.matrices[tile.matrix];
-        for (int k = block.thread; k < MatrixBatch::kTileSize; k += kThreads) {
-            const int i = MatrixBatch::kTile * tile.row + k / MatrixBatch::kTile;
-            const int j = MatrixBatch::kTile * tile.column + k % MatrixBatch::kTile;
-            if (tile.row == tile.column && j > i)
-                continue;
+        const int first = batch.matrices[tile.matrix].first_row;
+        for_lower_entries(tile, block.thread, [&](int i, int j) {
             const double mean = 0.5 * (batch.entry(tile.matrix, i, j) + batch.entry(tile.matrix, j, i));
-            const double scaled = mean * scales[m.first_row + i] * scales[m.first_row + j];
+            const double scaled = mean * scales[first + i] * scales[first + j];
             batch.entry(tile.matrix, i, j) = scaled;
             if (tile.row == tile.column)
                 batch.entry(tile.matrix, j, i) = scaled;
-        }
+        });
     }
 };
 
@@ -264,16 +273,12 @@ struct StoreInverse {
     {
         const MatrixTile tile = tile_pairs[item];
         const MatrixBatch::Matrix& m = batch.matrices[tile.matrix];
-        for (int k = block.thread; k < MatrixBatch::kTileSize; k += kThreads) {
-            const int i = MatrixBatch::kTile * tile.row + k / MatrixBatch::kTile;
-            const int j = MatrixBatch::kTile * tile.column + k % MatrixBatch::kTile;
-            if (tile.row == tile.column && j > i)
-                continue;
-            const float value =
-                float(-batch.entry(tile.matrix, i, j) * scales[m.first_row + i] * scales[m.first_row + j]);
+        for_lower_entries(tile, block.thread, [&](int i, int j) {
+            const double scaled = -batch.entry(tile.matrix, i, j);
+            const float value = float(scaled * scales[m.first_row + i] * scales[m.first_row + j]);
             batch.inverses[m.first_entry + i * m.stride() + j] = value;
             batch.inverses[m.first_entry + j * m.stride() + i] = value;
-        }
+        });
     }
 };
 
