@@ -120,17 +120,16 @@ void ClusterHierarchy::find_neighbours(const BlockMatrix& blocks, const SparseMa
 {
     first_neighbour_.assign(1, 0);
     for (int c = 0; c < cluster_count(); ++c) {
-        std::vector<int> found;
+        std::vector<int> found(block_of_[c] >= 0 ? 1 : 0, c);
         for (int k = first_vertex_[c]; block_of_[c] >= 0 && k < first_vertex_[c + 1]; ++k) {
             const int i = vertices_[k];
-            found.push_back(c);
             for (const int j : blocks.columns(i))
                 found.push_back(cluster_of_[j]);
             for (SparseMatrix::InnerIterator entry(isotropic, i); entry; ++entry)
                 found.push_back(cluster_of_[int(entry.col())]);
-            std::sort(found.begin(), found.end());
-            found.erase(std::unique(found.begin(), found.end()), found.end());
         }
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
         neighbours_.insert(neighbours_.end(), found.begin(), found.end());
         first_neighbour_.push_back(int(neighbours_.size()));
     }
