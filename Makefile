@@ -13,7 +13,7 @@ ARCHITECTURES := $(if $(CARD),native,90-real)
 DEMO_CUDA := $(if $(filter-out 0,$(GPU)),ON,$(if $(CARD),AUTO,OFF))
 
 FUZZ_TARGETS := $(addprefix fuzz_,abc cache gltf msh obj pattern ply scene usd_frames vtk)
-# What ships; research and the tests of GPUs would double the time.
+# What ships; research and the tests of GPUs would double the time. clang compiles it in two thirds of GCC's.
 SANITIZED_TESTS := $(addprefix test_,core quadrature2d volume garment collision avatars export garment_format scenes preview) $(FUZZ_TARGETS)
 
 configure = cmake --preset $(1) --log-level=WARNING --no-warn-unused-cli -DCMAKE_CUDA_ARCHITECTURES=$(ARCHITECTURES) $(2)
@@ -47,9 +47,9 @@ bench: packages ## Build toile-bench, which measures
 	@cmake --build --preset default --target toile-bench -j $(JOBS)
 	@build/bin/toile-bench --help
 
-sanitize: packages ## Debug build with sanitizers: both demos, and the tests that are fast
+sanitize: packages fuzz-packages ## Debug build with sanitizers: both demos, and the tests that are fast
 	@$(call configure,sanitize,)
-	@cmake --build --preset sanitize --target odr toile $(SANITIZED_TESTS) -j $(JOBS)
+	@cmake --build --preset sanitize --target toile $(SANITIZED_TESTS) -j $(JOBS)
 	@cmake/setup/sanitize.sh build build-sanitize $(JOBS)
 
 fuzz: packages fuzz-packages ## Run every parser under libFuzzer for FUZZ_SECONDS (60), built by clang

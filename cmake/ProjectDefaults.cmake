@@ -49,7 +49,8 @@ add_library(toile_options INTERFACE)
 target_link_libraries(toile_options INTERFACE toile_abi)
 # GCC 12 warns about its own vector intrinsics and std::string; clang-tidy finds the real cases.
 target_compile_options(toile_options INTERFACE
-    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -Wno-uninitialized -Wno-maybe-uninitialized -Wno-restrict>)
+    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow>
+    $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-uninitialized -Wno-maybe-uninitialized -Wno-restrict>)
 # nvcc: every warning is an error, above all host functions called by a kernel. 20012 are defaulted functions of
 # Eigen with a marker, which has no effect on them. Eigen calls constexpr functions of the standard library.
 target_compile_options(toile_options INTERFACE
@@ -73,23 +74,3 @@ option(TOILE_FUZZ "Instrument for libFuzzer (tests/fuzz)" OFF)
 if(TOILE_FUZZ)
     add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=fuzzer-no-link>")
 endif()
-
-# Two classes of one name in one program: found where their modules are merged by link-time optimisation. Programs are
-# linked from the machine code that the objects hold too.
-option(TOILE_CHECK_ODR "Compile for the target odr" OFF)
-if(TOILE_CHECK_ODR)
-    add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-flto;-ffat-lto-objects>")
-    add_link_options(-fno-lto)
-endif()
-
-# toile_check_odr(<module>...)   target odr: fails where two types of one name differ in the modules together
-function(toile_check_odr)
-    list(TRANSFORM ARGN PREPEND toile_ OUTPUT_VARIABLE modules)
-    list(TRANSFORM modules REPLACE "(.+)" "$<TARGET_FILE:\\1>" OUTPUT_VARIABLE archives)
-    set(merged "${PROJECT_BINARY_DIR}/odr.o")
-    add_custom_target(odr
-        COMMAND "${CMAKE_CXX_COMPILER}" -r -nostdlib -flinker-output=rel -flto=auto -O0 -Wodr -Werror=odr
-            -Wl,--whole-archive ${archives} -Wl,--no-whole-archive -o "${merged}"
-        COMMAND "${CMAKE_COMMAND}" -E rm "${merged}"
-        DEPENDS ${modules} VERBATIM COMMENT "One definition of every type")
-endfunction()

@@ -107,7 +107,7 @@ void check_lines(const Document& document, const std::string& key_path, const Pa
                  const garment::Panel& panel)
 {
     for (const auto& [name, line] : settings.lines) {
-        const auto has_name = [&](const garment::PanelEdge& edge) { return edge.label == name; };
+        const auto has_name = [&label = name](const garment::PanelEdge& edge) { return edge.label == label; };
         if (whole_number_in(name) || std::any_of(panel.edges.begin(), panel.edges.end(), has_name))
             document.refuse(below(key_path, name),
                             "is the name of an edge of " + as_written(panel.name) + "; choose another");

@@ -202,7 +202,8 @@ TEST(BodySegments, WhatIsNoBodyIsRefusedInOneLine)
           std::pair("garments/mh_woman_skirt.obj", "two legs can't be found"),
           std::pair("avatars/rigged_simple.gltf",
                     "left arm, right arm, left leg, right leg, neck, head can't be found")}) {
-        const std::string message = refusal([&] { find_segments(*load_body(name), {}, identity_affine()); });
+        const std::string message =
+            refusal([&file = name] { find_segments(*load_body(file), {}, identity_affine()); });
         EXPECT_NE(message.find(part), std::string::npos) << name << ": " << message;
         EXPECT_NE(message.find(name), std::string::npos) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
