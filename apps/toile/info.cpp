@@ -4,6 +4,7 @@
 #include <memory>
 #include <set>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/toile/terminal/command_line.h"

@@ -1,6 +1,8 @@
 #include <iostream>
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "scenes/format/schema/schema.h"

@@ -114,4 +114,9 @@ void ShapeCollider::move(const Eigen::Isometry3d& pose_t0, const Eigen::Isometry
     pose_t1_ = pose_t1;
 }
 
+Vec3 ShapeCollider::motion(const Vec3& point) const
+{
+    return point - pose_t0_ * (pose_t1_.inverse() * point);
+}
+
 } // namespace toile::collision

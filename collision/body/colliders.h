@@ -125,7 +125,7 @@ public:
     ShapePoint closest(const Vec3& x) const { return toile::collision::closest(shape_, pose_t1_, x); }
 
     /// Displacement from t0 to t1 [m] of the material point that is at `point` at t1.
-    Vec3 motion(const Vec3& point) const { return point - pose_t0_ * (pose_t1_.inverse() * point); }
+    Vec3 motion(const Vec3& point) const;
 
     const Shape& shape() const { return shape_; }
     const Eigen::Isometry3d& pose_t0() const { return pose_t0_; } ///< world_from_shape at t0

@@ -48,6 +48,8 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
 {
 }
 
+Contact::~Contact() = default;
+
 void Contact::begin_step(const StepStart& start)
 {
     dt_ = start.dt;
@@ -67,6 +69,16 @@ void Contact::forget()
     terms_->forget();
     if (between_)
         between_->forget();
+}
+
+bool Contact::may_be_active() const { return !terms_->empty(); }
+
+DeviceActiveSet* Contact::on_device(const CudaSpace& space) { return terms_->on_device(space); }
+
+void Contact::mark_touching(StepField x, View<unsigned char> touches)
+{
+    terms_->see(x);
+    terms_->mark_touching(touches);
 }
 
 double Contact::add_gradient(View<const Vec3> x, View<Vec3> gradient) const

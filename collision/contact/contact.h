@@ -6,10 +6,11 @@
 #include "collision/contact/cloth_contact.h"
 #include "collision/contact/contact_cloth.h"
 #include "collision/contact/energy.h"
-#include "collision/contact/terms.h"
 #include "core/pd/energy/active_set_energy.h"
 
 namespace toile::collision {
+
+class ContactTerms;
 
 /// Contact of cloths with avatars, shapes and each other during a step. Finds pairs, keeps their energy,
 /// searches again when the cloth has slid from where they were found, and stores friction from step to step.
@@ -41,9 +42,10 @@ public:
     Contact(View<const Triangle> triangles, View<const Vec3> positions,
             const std::vector<ContactCloth>& cloths, const std::vector<ContactCollider>& colliders,
             const Settings& settings, const CudaSpace* space = nullptr);
+    ~Contact() override;
 
     void begin_step(const StepStart& start) override;
-    bool may_be_active() const override { return !terms_->empty(); }
+    bool may_be_active() const override;
     bool make_feasible(StepField x) const override;
     bool sweep_once(StepField x) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override;
@@ -51,12 +53,8 @@ public:
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
-    DeviceActiveSet* on_device(const CudaSpace& space) override { return terms_->on_device(space); }
-    void mark_touching(StepField x, View<unsigned char> touches) override
-    {
-        terms_->see(x);
-        terms_->mark_touching(touches);
-    }
+    DeviceActiveSet* on_device(const CudaSpace& space) override;
+    void mark_touching(StepField x, View<unsigned char> touches) override;
     bool revise(StepField x, MinimiserProgress progress) override;
     void clear(StepField x, StepField v) override;
     void resolve(StepField x, StepField v) override;

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "garment/energy/bending.h"
-#include "garment/energy/membrane.h"
+#include "garment/energy/membrane_settings.h"
+#include "garment/energy/rest_shape.h"
 
 namespace toile::garment {
 
@@ -12,7 +13,7 @@ namespace toile::garment {
 struct ClothModel {
     std::shared_ptr<const RestShape> rest;
     std::vector<double> masses; ///< [vertices] [kg], positive
-    Membrane::Settings stretch;
+    MembraneSettings stretch;
     Bending::Settings bending;
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/pd/energy/energy.h"
 #include "garment/energy/membrane_lanes.h"
+#include "garment/energy/membrane_settings.h"
 #include "garment/energy/rest_shape.h"
 
 namespace toile::garment {
@@ -22,13 +23,7 @@ namespace toile::garment {
 /// the potential over that step is part of W.
 class Membrane : public Energy {
 public:
-    struct Settings {
-        double warp = 250.0; ///< [N/m] k_u, Young's modulus x thickness along the warp. Must be positive.
-        double weft = 250.0; ///< [N/m] k_v along the weft. Must be positive.
-        double shear = 50.0; ///< [N/m] G. Positive and at most half of the smaller of warp and weft.
-        double stretch_damping = 0.0; ///< [s] of warp and weft: viscosity over stiffness. Not negative.
-        double shear_damping = 0.0;   ///< [s]
-    };
+    using Settings = MembraneSettings;
 
     /// @param stiffness  [triangles] factor on the three stiffnesses [-]; empty: 1, as a GPU needs it
     /// @throws InvalidInput naming `source` and the setting outside its range.

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "collision/body/colliders.h"
-#include "collision/contact/contact.h"
 #include "scenes/colliders/body_motion.h"
 
 namespace toile::scenes {

@@ -3,9 +3,13 @@
 #include <memory>
 #include <vector>
 
-#include "garment/energy/membrane.h"
+#include "garment/energy/rest_shape.h"
 #include "garment/fabric/fabric.h"
 #include "scenes/surfaces/cloth_state.h"
+
+namespace toile::garment {
+class Membrane;
+} // namespace toile::garment
 
 namespace toile::scenes {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "garment/energy/membrane.h"
 #include "research/methods/vbd/sweep_kernels.h"
 #include "research/methods/vbd/vertex_block_descent.h"
 #include "research/methods/xpbd/xpbd.h"

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
+#include "garment/energy/membrane.h"
 #include "research/methods/vbd/vertex_block_descent.h"
 #include "research/methods/xpbd/xpbd.h"
 #include "tests/garment/sheets.h"

@@ -1,5 +1,7 @@
 #include "apps/toile/caches/unlisted.h"
 
+#include <CLI/CLI.hpp>
+
 #include "scenes/format/field.h"
 
 namespace toile::app {

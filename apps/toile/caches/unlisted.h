@@ -2,9 +2,11 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "scenes/format/scene.h"
+
+namespace CLI {
+class App;
+} // namespace CLI
 
 namespace toile::app {
 

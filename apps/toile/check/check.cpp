@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/caches/cache_files.h"
 #include "apps/toile/caches/exports.h"

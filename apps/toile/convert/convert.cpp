@@ -2,6 +2,8 @@
 #include <memory>
 #include <optional>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/toile/caches/cache_files.h"
 #include "apps/toile/caches/exported_mesh.h"
 #include "apps/toile/check/certify.h"

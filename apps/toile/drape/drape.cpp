@@ -2,6 +2,8 @@
 #include <cmath>
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/toile/drape/continuation.h"
 #include "apps/toile/drape/drape_files.h"
 #include "apps/toile/drape/drape_progress.h"

@@ -1,5 +1,7 @@
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/caches/cache_files.h"
 #include "apps/toile/caches/unlisted.h"

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/toile/pattern/commands.h"
 
 namespace toile::app {

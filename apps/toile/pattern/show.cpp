@@ -1,6 +1,8 @@
 #include <iostream>
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/toile/pattern/commands.h"
 #include "apps/toile/pattern/drawing.h"
 #include "apps/toile/pattern/report.h"

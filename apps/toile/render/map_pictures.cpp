@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/preview/value_view.h"
 #include "apps/toile/cloth/skin.h"
 #include "apps/toile/render/number_list.h"

@@ -2,6 +2,8 @@
 #include <iostream>
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/preview/video.h"
 #include "apps/toile/caches/cache_files.h"
 #include "apps/toile/caches/exports.h"

@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/toile/render/number_list.h"
 #include "core/base/error.h"
 #include "core/mesh/triangle_mesh.h"

@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/toile/simulate/device_list.h"
 #include "apps/toile/simulate/scene_run.h"
 #include "apps/toile/simulate/scenes_run.h"

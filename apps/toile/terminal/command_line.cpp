@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/run_log.h"
 #include "apps/toile/terminal/standard_streams.h"

@@ -10,6 +10,7 @@
 #include "core/pd/minimiser/newton_pcg.h"
 #include "core/pd/newton/embedded_points.h"
 #include "core/pd/step/step_objective.h"
+#include "garment/energy/membrane.h"
 #include "garment/pattern/shapes.h"
 #include "quadrature2d/geodesic_embedding.h"
 #include "research/benchmarks/bar.h"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "garment/energy/membrane.h"
 #include "research/methods/baseline_method.h"
 #include "research/methods/colours.h"
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/linear/field.h"
+#include "garment/energy/membrane.h"
 #include "research/methods/vbd/followed_acceleration.h"
 
 namespace toile::research {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "garment/energy/membrane_kernels.h"
 #include "research/methods/baseline_method.h"
 #include "research/methods/block_range.h"
 #include "research/methods/lane_gather.h"

@@ -1,6 +1,7 @@
 #include "research/methods/xpbd/constraint_table.h"
 
 #include "core/mesh/colouring.h"
+#include "garment/energy/membrane.h"
 #include "research/methods/baseline_method.h"
 #include "research/methods/bending_forces.h"
 #include "research/methods/colours.h"

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/linear/field.h"
+#include "garment/energy/membrane.h"
 #include "research/methods/bending_forces.h"
 
 namespace toile::research {

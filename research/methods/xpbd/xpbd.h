@@ -1,5 +1,6 @@
 #pragma once
 
+#include "garment/energy/membrane_kernels.h"
 #include "research/methods/baseline_method.h"
 #include "research/methods/xpbd/constraint_blocks.h"
 
