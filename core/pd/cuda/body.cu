@@ -57,8 +57,8 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
     masses_.upload(system_->masses());
     if (settings_.outer == OuterMethod::Newton) {
         const Curvature curvature(x_.size(), system_->energies());
-        newton_.emplace(space_, embedded(positions), curvature.blocks(), curvature.isotropic(),
-                        settings_.extent, energies_, *solver_);
+        newton_.emplace(space_, embedded(positions), system_->masses(), curvature.blocks(),
+                        curvature.isotropic(), settings_.extent, energies_, *solver_);
     } else {
         descent_.emplace(space_, x_.size(), energies_.partial_count());
         drive_.resize(x_.size());
@@ -171,7 +171,7 @@ OuterLoop::Outcome DeviceBody::minimise_by_newton(const Newton::Settings& settin
                                                   const Newton::Revise& revise, bool is_calm)
 {
     newton_->set_problem({x_t1_, x_.device(), v_.device(), prediction_.device(), inertia_.view(),
-                          masses_.view(), fixed_.view(), dt_, active_});
+                          fixed_.view(), dt_, active_});
     return Newton::minimise(*newton_, settings, revise, is_calm);
 }
 

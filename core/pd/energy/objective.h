@@ -1,7 +1,5 @@
 #pragma once
 
-#include <limits>
-
 #include "core/linear/sparse_matrix.h"
 #include "core/pd/energy/energy.h"
 #include "core/pd/energy/frozen_hessian.h"
@@ -69,16 +67,6 @@ public:
 
     /// Null if the objective has no second derivatives.
     virtual Hessian* hessian() { return nullptr; }
-
-    /// RMS by mass of a displacement of the free vertices, per time of the step [m/s].
-    virtual double speed_of([[maybe_unused]] View<const Vec3> displacement) const { return 0.0; }
-
-    /// Bound on speed_of() the Newton step at a point with this gradient [m/s]: its Hessian is at least the
-    /// inertia's.
-    virtual double max_speed_of([[maybe_unused]] View<const Vec3> gradient) const
-    {
-        return std::numeric_limits<double>::infinity();
-    }
 
     /// True if the point with this gradient counts as the minimiser.
     /// @param move       next displacement of the method, nowhere longer than the tolerance [m]

@@ -7,11 +7,12 @@
 
 namespace toile {
 
-/// Stops of the solves of a minimisation, whose errors are speeds: RMS by mass, per time of the step. The
-/// Hessian is at least the inertia, so that an error in energy bounds that in speed.
+/// Stops of the solves of a minimisation, whose errors are speeds: RMS by weight (ComponentWeights), per time
+/// of the step. The Hessian is at least the inertia, so that an error in energy bounds that in speed.
 class DirectionStop {
 public:
-    /// @param stiffness  [N/m] of the free vertices' inertia
+    /// @param stiffness  [N/m] of the free vertices' inertia, by components: that of the lightest times their
+    ///                   number
     /// @param dt         [s]
     void begin_step(double stiffness, double dt)
     {

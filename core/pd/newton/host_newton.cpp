@@ -1,6 +1,7 @@
 #include "core/pd/newton/host_newton.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
@@ -17,12 +18,25 @@ void HostNewton::set_problem(const Problem& problem)
     double stiffness = 0.0;
     for (int i = 0; i < problem.x.size(); ++i)
         stiffness += problem.fixed[i] ? 0.0 : problem.inertia[i];
-    stop_.begin_step(stiffness, problem.dt);
+    weights_.set_fixed(problem.fixed);
+    stop_.begin_step(stiffness * weights_.lightest(), problem.dt);
 }
 
 double HostNewton::evaluate() { return problem_.objective->evaluate(problem_.x, gradient_); }
 
-double HostNewton::max_speed() { return problem_.objective->max_speed_of(gradient_); }
+/// RMS speed [m/s] of a field whose squares add up to this, by weight [kg m^2].
+double HostNewton::speed(double weighted_square) const
+{
+    return weights_.mass() > 0.0 ? std::sqrt(weighted_square / weights_.mass()) / problem_.dt : 0.0;
+}
+
+double HostNewton::max_speed()
+{
+    const View<const double> weights = weights_.all();
+    return speed(parallel_sum(kCpu, weights.size(), 0.0, [&](int i) {
+        return weights[i] * (gradient_[i] / problem_.inertia[i]).squaredNorm();
+    }));
+}
 
 NewtonSpace::Solution HostNewton::find_direction(bool is_first, double error)
 {
@@ -105,7 +119,9 @@ NewtonSpace::Trial HostNewton::try_step(double length)
     trial.value = problem_.objective->evaluate(trial_, trial_gradient_);
     trial.slope = dot(gradient_, direction_);
     trial.end_slope = dot(trial_gradient_, direction_);
-    trial.speed = problem_.objective->speed_of(direction_);
+    const View<const double> weights = weights_.all();
+    trial.speed = speed(parallel_sum(kCpu, weights.size(), 0.0,
+                                     [&](int i) { return weights[i] * direction_[i].squaredNorm(); }));
     trial.displacement = max_norm(direction_);
     return trial;
 }
@@ -139,9 +155,10 @@ bool HostNewton::has_moved() { return !std::equal(problem_.x.begin(), problem_.x
 double HostNewton::driving_speed()
 {
     const Problem& p = problem_;
-    parallel_for(kCpu, "newton/driving", p.x.size(),
-                 [&](int i) { trial_[i] = p.prediction[i] - p.start[i] - p.dt * p.v[i]; });
-    return p.objective->speed_of(trial_);
+    const View<const double> weights = weights_.all();
+    return speed(parallel_sum(kCpu, weights.size(), 0.0, [&](int i) {
+        return weights[i] * (p.prediction[i] - p.start[i] - p.dt * p.v[i]).squaredNorm();
+    }));
 }
 
 bool HostNewton::are_fixed_moving()

@@ -4,6 +4,7 @@
 
 #include "core/pd/energy/active_set_energy.h"
 #include "core/pd/newton/coarse_age.h"
+#include "core/pd/newton/component_weights.h"
 #include "core/pd/newton/direction_stop.h"
 #include "core/pd/newton/newton_space.h"
 
@@ -26,7 +27,11 @@ public:
     };
 
     /// @param points, extent  [vertices] undeformed positions, for the clusters of the AffineSpace
-    HostNewton(std::vector<EmbeddedPoint> points, Extent extent) : solver_(std::move(points), extent) {}
+    /// @param weights         of their errors
+    HostNewton(std::vector<EmbeddedPoint> points, Extent extent, ComponentWeights weights)
+        : solver_(std::move(points), extent), weights_(std::move(weights))
+    {
+    }
 
     /// Begins a step.
     void set_problem(const Problem& problem);
@@ -50,9 +55,11 @@ public:
 
 private:
     Solution solve(View<const Vec3> gradient, double error);
+    double speed(double weighted_square) const;
 
     Problem problem_;
     HessianSolver solver_;
+    ComponentWeights weights_;
     DirectionStop stop_;
     CoarseAge coarse_age_{HessianSolver::kPriceOfCoarse};
     std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_, kept_;

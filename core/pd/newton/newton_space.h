@@ -20,7 +20,7 @@ public:
         double value = 0.0;        ///< [J] of the objective
         double slope = 0.0;        ///< [J] gradient . direction, at the current point
         double end_slope = 0.0;    ///< [J] likewise, with the gradient at the trial point
-        double speed = 0.0;        ///< [m/s] RMS of the whole direction by mass, per time of the step
+        double speed = 0.0;        ///< [m/s] RMS of the whole direction by weight, per time of the step
         double displacement = 0.0; ///< [m] largest of the whole direction
     };
 

@@ -17,7 +17,9 @@ Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings
       touched_(x_.size(), 0), touches_(x_.size(), 0), inertia_(x_.size())
 {
     if (settings.outer == OuterMethod::Newton)
-        newton_.emplace(embedded(x_), settings_.extent);
+        newton_.emplace(embedded(x_), settings_.extent,
+                        ComponentWeights(system_->masses(), system_->curvature().blocks(),
+                                         system_->curvature().isotropic()));
     else
         outer_ = make_outer_loop(settings.outer, settings.history);
 }

@@ -48,22 +48,6 @@ Hessian* StepObjective::hessian()
     return &*hessian_;
 }
 
-double StepObjective::speed_of(View<const Vec3> displacement) const
-{
-    const double sum = parallel_sum(kCpu, displacement.size(), 0.0, [&](int i) {
-        return start_.fixed[i] ? 0.0 : start_.masses[i] * displacement[i].squaredNorm();
-    });
-    return free_mass_ > 0.0 ? std::sqrt(sum / free_mass_) / start_.dt : 0.0;
-}
-
-double StepObjective::max_speed_of(View<const Vec3> gradient) const
-{
-    const double sum = parallel_sum(kCpu, gradient.size(), 0.0, [&](int i) {
-        return start_.fixed[i] ? 0.0 : start_.masses[i] * (gradient[i] / inertia_[i]).squaredNorm();
-    });
-    return free_mass_ > 0.0 ? std::sqrt(sum / free_mass_) / start_.dt : 0.0;
-}
-
 bool StepObjective::is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const
 {
     const StepError error(system_.masses(), system_.fixed(), start_.x, start_.prediction, start_.dt);

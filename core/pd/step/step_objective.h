@@ -23,8 +23,6 @@ public:
     void precondition_linearly(View<const Vec3> g, View<Vec3> z) override { system_.solver().solve(g, z); }
     void accept(View<const Vec3> x) override;
     Hessian* hessian() override;
-    double speed_of(View<const Vec3> displacement) const override;
-    double max_speed_of(View<const Vec3> gradient) const override;
     bool is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const override;
     double negligible_gain(double tolerance) const override;
 

@@ -11,11 +11,13 @@
 namespace toile {
 
 DeviceNewton::DeviceNewton(const CudaSpace& space, View<const EmbeddedPoint> points,
-                           const BlockMatrix& blocks, const SparseMatrix& isotropic, Extent extent,
-                           DeviceEnergies& energies, DeviceSolver& global_solver)
+                           View<const double> masses, const BlockMatrix& blocks,
+                           const SparseMatrix& isotropic, Extent extent, DeviceEnergies& energies,
+                           DeviceSolver& global_solver)
     : space_(space), energies_(energies), global_solver_(global_solver),
-      solver_(space, points, blocks, isotropic, extent, energies),
-      gradient_(space, "newton/gradient", points.size()), trial_x_(space, "newton/trial_x", points.size()),
+      solver_(space, points, blocks, isotropic, extent, energies), weights_(masses, blocks, isotropic),
+      device_weights_(space, "newton/weights"), gradient_(space, "newton/gradient", points.size()),
+      trial_x_(space, "newton/trial_x", points.size()),
       trial_gradient_(space, "newton/trial_gradient", points.size()),
       kept_(space, "newton/kept", points.size()),
       energy_(space, "newton/energy", points.size() + energies.partial_count()),
@@ -28,18 +30,26 @@ DeviceNewton::DeviceNewton(const CudaSpace& space, View<const EmbeddedPoint> poi
 {
     gradient_.fill_zero();
     direction_.fill_zero();
+    device_weights_.upload(weights_.all());
+}
+
+void DeviceNewton::set_fixed(const std::vector<unsigned char>& fixed)
+{
+    solver_.set_fixed(fixed);
+    weights_.set_fixed(fixed);
+    device_weights_.upload(weights_.all());
 }
 
 void DeviceNewton::set_problem(const Problem& problem)
 {
     problem_ = problem;
-    parallel_sum_record_then<NewtonStartSums>(space_, "newton/start", problem.masses.size(),
+    parallel_sum_record_then<NewtonStartSums>(space_, "newton/start", trial_x_.size(),
                                               MeasureNewtonStart{problem.start, problem.v, problem.prediction,
-                                                                 problem.masses, problem.inertia,
+                                                                 device_weights_.view(), problem.inertia,
                                                                  problem.fixed, problem.dt},
                                               start_report_.next(), sums_);
     start_ = start_report_.await();
-    stop_.begin_step(start_.stiffness, problem.dt);
+    stop_.begin_step(start_.stiffness * weights_.lightest(), problem.dt);
 }
 
 BeginNewtonTrial DeviceNewton::begin_trial()
@@ -80,15 +90,16 @@ NewtonTrialSums DeviceNewton::measure()
     parallel_sum_record_then<NewtonTrialSums>(
         space_, "newton/measure", n,
         MeasureNewtonTrial{energy_.view(), gradient_.view(), trial_gradient_.view(), direction_.view(),
-                           problem_.masses, problem_.inertia, problem_.fixed},
+                           device_weights_.view(), problem_.inertia, problem_.fixed},
         trial_report_.next(), sums_);
     trial_ = trial_report_.await();
     return trial_;
 }
 
-double DeviceNewton::speed(double mass_square) const
+/// RMS speed [m/s] of a field whose squares add up to this, by weight [kg m^2].
+double DeviceNewton::speed(double weighted_square) const
 {
-    return start_.mass > 0.0 ? std::sqrt(mass_square / start_.mass) / problem_.dt : 0.0;
+    return weights_.mass() > 0.0 ? std::sqrt(weighted_square / weights_.mass()) / problem_.dt : 0.0;
 }
 
 double DeviceNewton::evaluate()
@@ -185,7 +196,8 @@ NewtonSpace::Trial DeviceNewton::try_step(double length)
     parallel_for(space_, "newton/try_along", trial_x_.size(),
                  TryAlong{problem_.x.device(), direction_.view(), length, trial_x_.view(), begin_trial()});
     const NewtonTrialSums sums = measure();
-    return {sums.value, sums.slope, sums.end_slope, speed(sums.mass_square), std::sqrt(sums.largest_square)};
+    return {sums.value, sums.slope, sums.end_slope, speed(sums.weighted_square),
+            std::sqrt(sums.largest_square)};
 }
 
 double DeviceNewton::try_rest(double limit)

@@ -6,6 +6,7 @@
 #include "core/pd/cuda/newton/solver.h"
 #include "core/pd/energy/active_set_energy.h"
 #include "core/pd/newton/coarse_age.h"
+#include "core/pd/newton/component_weights.h"
 #include "core/pd/newton/direction_stop.h"
 
 namespace toile {
@@ -19,7 +20,6 @@ public:
         View<const Vec3> start, v;         ///< [vertices] at t0 [m], [m/s]
         View<const Vec3> prediction;       ///< [vertices] [m]
         View<const double> inertia;        ///< [vertices] [N/m]
-        View<const double> masses;         ///< [vertices] [kg]
         View<const unsigned char> fixed;   ///< [vertices]
         double dt = 0.0;                   ///< [s]
         ActiveSetEnergy* active = nullptr; ///< may be null
@@ -27,14 +27,15 @@ public:
 
     /// @param space, energies, global_solver  borrowed
     /// @param points  [vertices] undeformed positions
+    /// @param masses  [vertices] [kg]
     /// @param blocks, isotropic  pattern of the Hessian, see HessianPattern
     /// @param extent  of the points
-    DeviceNewton(const CudaSpace& space, View<const EmbeddedPoint> points, const BlockMatrix& blocks,
-                 const SparseMatrix& isotropic, Extent extent, DeviceEnergies& energies,
-                 DeviceSolver& global_solver);
+    DeviceNewton(const CudaSpace& space, View<const EmbeddedPoint> points, View<const double> masses,
+                 const BlockMatrix& blocks, const SparseMatrix& isotropic, Extent extent,
+                 DeviceEnergies& energies, DeviceSolver& global_solver);
 
     /// Takes other fixed vertices.
-    void set_fixed(const std::vector<unsigned char>& fixed) { solver_.set_fixed(fixed); }
+    void set_fixed(const std::vector<unsigned char>& fixed);
 
     /// Begins a step.
     void set_problem(const Problem& problem);
@@ -65,12 +66,14 @@ private:
     void freeze_here();
     void evaluate_contact(View<const Vec3> x);
     Solution solve(View<const Vec3> gradient, double error);
-    double speed(double mass_square) const;
+    double speed(double weighted_square) const;
 
     const CudaSpace& space_;
     DeviceEnergies& energies_;
     DeviceSolver& global_solver_;
     DeviceHessianSolver solver_;
+    ComponentWeights weights_;
+    DeviceArray<double> device_weights_; ///< [vertices] those of weights_
     Problem problem_;
     NewtonStartSums start_;       ///< of the step
     NewtonTrialSums trial_;       ///< at the last trial point

@@ -76,12 +76,12 @@ struct CopyFreeGradient {
 struct NewtonTrialSums {
     static constexpr int kLargest = 0; ///< index of the number that is a maximum
 
-    double largest_square = 0.0; ///< [m^2] of the direction's vectors: a maximum, not a sum
-    double value = 0.0;          ///< [J]
-    double slope = 0.0;          ///< [J] gradient . direction
-    double end_slope = 0.0;      ///< [J] likewise at the trial point
-    double mass_square = 0.0;    ///< [kg m^2] mass times squared direction
-    double bound = 0.0; ///< [kg m^2] mass times the square of gradient over inertia, at the trial point
+    double largest_square = 0.0;  ///< [m^2] of the direction's vectors: a maximum, not a sum
+    double value = 0.0;           ///< [J]
+    double slope = 0.0;           ///< [J] gradient . direction
+    double end_slope = 0.0;       ///< [J] likewise at the trial point
+    double weighted_square = 0.0; ///< [kg m^2] weight times squared direction
+    double bound = 0.0; ///< [kg m^2] weight times the square of gradient over inertia, at the trial point
 
     TOILE_HD NewtonTrialSums& operator+=(const NewtonTrialSums& other)
     {
@@ -89,24 +89,24 @@ struct NewtonTrialSums {
         value += other.value;
         slope += other.slope;
         end_slope += other.end_slope;
-        mass_square += other.mass_square;
+        weighted_square += other.weighted_square;
         bound += other.bound;
         return *this;
     }
 };
 
 struct MeasureNewtonTrial {
-    View<const double> energy;          ///< [vertices and more] parts of the value [J]
-    View<const Vec3> gradient;          ///< [vertices] at the current point [N]
-    View<const Vec3> trial_gradient;    ///< [vertices] [N]
-    View<const PaddedVec3> direction;   ///< [vertices] [m]
-    View<const double> masses, inertia; ///< [vertices] [kg], [N/m]
-    View<const unsigned char> fixed;    ///< [vertices]
+    View<const double> energy;           ///< [vertices and more] parts of the value [J]
+    View<const Vec3> gradient;           ///< [vertices] at the current point [N]
+    View<const Vec3> trial_gradient;     ///< [vertices] [N]
+    View<const PaddedVec3> direction;    ///< [vertices] [m]
+    View<const double> weights, inertia; ///< [vertices] [kg], [N/m]
+    View<const unsigned char> fixed;     ///< [vertices]
 
     TOILE_HD NewtonTrialSums operator()(int i) const
     {
         NewtonTrialSums sums;
-        for (int k = i; k < energy.size(); k += masses.size())
+        for (int k = i; k < energy.size(); k += weights.size())
             sums.value += energy[k];
         if (fixed[i] != 0)
             return sums;
@@ -114,8 +114,8 @@ struct MeasureNewtonTrial {
         sums.largest_square = d.squaredNorm();
         sums.slope = gradient[i].dot(d);
         sums.end_slope = trial_gradient[i].dot(d);
-        sums.mass_square = masses[i] * sums.largest_square;
-        sums.bound = masses[i] * (trial_gradient[i] / inertia[i]).squaredNorm();
+        sums.weighted_square = weights[i] * sums.largest_square;
+        sums.bound = weights[i] * (trial_gradient[i] / inertia[i]).squaredNorm();
         return sums;
     }
 };
@@ -213,8 +213,7 @@ struct NewtonStartSums {
 
     double moving = 0.0;    ///< 1 if a fixed vertex has another target than its position
     double inertia = 0.0;   ///< [J] of no motion
-    double driving = 0.0;   ///< [kg m^2] mass times the square of what external forces alone would move
-    double mass = 0.0;      ///< [kg] of the free vertices
+    double driving = 0.0;   ///< [kg m^2] weight times the square of what external forces alone would move
     double stiffness = 0.0; ///< [N/m] of their inertia
 
     TOILE_HD NewtonStartSums& operator+=(const NewtonStartSums& other)
@@ -222,17 +221,16 @@ struct NewtonStartSums {
         moving = std::fmax(moving, other.moving);
         inertia += other.inertia;
         driving += other.driving;
-        mass += other.mass;
         stiffness += other.stiffness;
         return *this;
     }
 };
 
 struct MeasureNewtonStart {
-    View<const Vec3> x, v, prediction;  ///< [vertices] at t0 [m], [m/s]; [m]
-    View<const double> masses, inertia; ///< [vertices] [kg], [N/m]
-    View<const unsigned char> fixed;    ///< [vertices]
-    double dt;                          ///< [s]
+    View<const Vec3> x, v, prediction;   ///< [vertices] at t0 [m], [m/s]; [m]
+    View<const double> weights, inertia; ///< [vertices] [kg], [N/m]
+    View<const unsigned char> fixed;     ///< [vertices]
+    double dt;                           ///< [s]
 
     TOILE_HD NewtonStartSums operator()(int i) const
     {
@@ -243,8 +241,7 @@ struct MeasureNewtonStart {
             return sums;
         }
         sums.inertia = 0.5 * inertia[i] * move.squaredNorm();
-        sums.driving = masses[i] * (move - dt * v[i]).squaredNorm();
-        sums.mass = masses[i];
+        sums.driving = weights[i] * (move - dt * v[i]).squaredNorm();
         sums.stiffness = inertia[i];
         return sums;
     }
