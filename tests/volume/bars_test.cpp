@@ -92,6 +92,28 @@ double relative_torque(int across, double poisson)
     return torque / (shear_modulus(poisson) * kSquare * std::pow(kSide, 4) * kAngle / kLength);
 }
 
+/// Moment of a bar that is bent to a circle, relative to the exact one: sections stay flat, and contract as
+/// they like [Timoshenko & Goodier 1970, sec. 102].
+double relative_moment(int across, double poisson)
+{
+    constexpr double kLength = kSide, kCurvature = 1e-3; // [m], [1/m]
+    Bar bar(kLength, across, poisson);
+    for (const bool far : {false, true})
+        for (const int v : bar.end(far)) {
+            const double height = bar.block.mesh.positions[v].y() - 0.5 * kSide;
+            bar.statics.prescribe(v, 0, far ? -kCurvature * kLength * height : 0.0);
+        }
+    const int corner = bar.block.at(0, 0, 0), next = bar.block.at(0, 0, bar.block.cells[2]);
+    bar.statics.prescribe(corner, 1, 0.0);
+    bar.statics.prescribe(corner, 2, 0.0);
+    bar.statics.prescribe(next, 1, 0.0);
+    const Statics::Solution solution = bar.statics.solve();
+    double moment = 0.0;
+    for (const int v : bar.end(true))
+        moment -= (bar.block.mesh.positions[v].y() - 0.5 * kSide) * solution.reactions[v].x();
+    return moment / (kYoung * std::pow(kSide, 4) / 12.0 * kCurvature);
+}
+
 /// Bars of 4, 8 and 16 tetrahedra across: the errors fall as h^2, and the last is within 2 %.
 template <typename Relative>
 void expect_second_order(const Relative& relative, double poisson)
@@ -104,6 +126,12 @@ void expect_second_order(const Relative& relative, double poisson)
 }
 
 TEST(Bars, CantileverHasAnErrorOfSecondOrder) { expect_second_order(relative_deflection, 0.0); }
+
+TEST(Bars, BendingHasAnErrorOfSecondOrder)
+{
+    for (const double poisson : {0.0, 0.3, 0.45})
+        expect_second_order(relative_moment, poisson);
+}
 
 TEST(Bars, TorsionHasAnErrorOfSecondOrder)
 {
