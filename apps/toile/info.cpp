@@ -26,6 +26,7 @@
 #include "scenes/format/read_scene.h"
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/surfaces/uv_rest.h"
+#include "scenes/world/scene_costs.h"
 #include "volume/mesh/msh.h"
 #include "volume/mesh/quality.h"
 #include "volume/mesh/vtk.h"
@@ -312,7 +313,19 @@ void print_scene(const std::filesystem::path& file)
                             (avatar.motion ? ", motion " + avatar.motion->file.string() : ""));
     for (const scene::Cloth& cloth : scene.cloths)
         print("cloth", cloth.name + cache_text(cloth.shape) + ", " + cloth.fabric);
+    for (const scene::Solid& solid : scene.solids)
+        print("rigid body", solid.name + ", " + short_text(solid.density) + " kg/m^3");
+    for (const scene::SoftBody& body : scene.soft_bodies)
+        print("soft body", body.name + (body.file ? ", " + body.file->filename().string() : "") +
+                               (body.core ? ", around a core" : "") + ", " + short_text(body.young) +
+                               " Pa, " + short_text(body.density) + " kg/m^3");
     print("attachments", scene.attachments.size());
+    std::cout.flush();
+    const scenes::SceneCosts costs = scenes::expected_costs(scene, true);
+    if (costs.parts == 0)
+        return;
+    print("simulated vertices", costs.vertex_count());
+    print("on a GPU", scenes::table_text(costs) + "; " + scenes::memory_text(costs));
 }
 
 /// Whether numbered files of this name exist.

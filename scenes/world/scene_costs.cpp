@@ -9,6 +9,7 @@
 #include "core/compute/parallel.h"
 #include "core/quadrature/expected_tables.h"
 #include "scenes/format/solver_methods.h"
+#include "scenes/world/cloth_group.h"
 
 namespace toile::scenes {
 
@@ -120,6 +121,18 @@ SceneCosts expected_costs(const Scene& scene, const std::vector<SceneCloth>& clo
     return costs;
 }
 
+SceneCosts expected_costs(const Scene& scene, bool on_gpu)
+{
+    std::vector<Collider> colliders;
+    for (const scene::Avatar& avatar : scene.avatars)
+        colliders.emplace_back(avatar, scene.contact.friction);
+    const std::vector<SceneCloth> cloths = make_cloths(scene, colliders, {});
+    int vertices = 0;
+    for (const SceneCloth& cloth : cloths)
+        vertices += cloth.vertex_count();
+    return expected_costs(scene, cloths, make_bodies(scene, colliders, vertices), on_gpu);
+}
+
 std::string table_text(const SceneCosts& costs)
 {
     return std::to_string(costs.tables) + " quadrature table" + (costs.tables == 1 ? "" : "s") + " for " +
@@ -129,12 +142,17 @@ std::string table_text(const SceneCosts& costs)
            " s to build if none is stored, " + per_vertex(costs, costs.table_bytes) + " kB a vertex";
 }
 
-std::string memory_text(const SceneCosts& costs, const FreeMemory& free)
+std::string memory_text(const SceneCosts& costs)
 {
     return "memory of the GPU: " + in_mebibytes(costs.min_bytes) + " to " + in_mebibytes(costs.max_bytes) +
            " MiB, " + per_vertex(costs, double(costs.min_bytes)) + " to " +
-           per_vertex(costs, double(costs.max_bytes)) + " kB a vertex; " + in_mebibytes(free.bytes) +
-           " MiB are free" + (costs.max_bytes > free.bytes ? ", which may be too little" : "");
+           per_vertex(costs, double(costs.max_bytes)) + " kB a vertex";
+}
+
+std::string memory_text(const SceneCosts& costs, const FreeMemory& free)
+{
+    return memory_text(costs) + "; " + in_mebibytes(free.bytes) + " MiB are free" +
+           (costs.max_bytes > free.bytes ? ", which may be too little" : "");
 }
 
 std::string why_too_large(const SceneCosts& costs, const FreeMemory& free)

@@ -31,6 +31,10 @@ struct SceneCosts {
 SceneCosts expected_costs(const Scene& scene, const std::vector<SceneCloth>& cloths,
                           const SceneBodies& bodies, bool on_gpu);
 
+/// Likewise of a scene whose files are not loaded yet.
+/// @throws InvalidInput for a file, mesh, fabric or attachment that does not work
+SceneCosts expected_costs(const Scene& scene, bool on_gpu);
+
 /// E.g. "11 quadrature tables for 17 cloths and bodies of 177533 vertices: about 3.4 s to build if none is
 /// stored, 0.35 kB a vertex".
 std::string table_text(const SceneCosts& costs);
@@ -41,7 +45,10 @@ struct FreeMemory {
     std::size_t bytes = 0;
 };
 
-/// E.g. "memory of the GPU: 970 to 3540 MiB, 6 to 21 kB a vertex; 80200 MiB are free".
+/// E.g. "memory of the GPU: 970 to 3540 MiB, 6 to 21 kB a vertex".
+std::string memory_text(const SceneCosts& costs);
+
+/// Likewise, with "; 80200 MiB are free".
 std::string memory_text(const SceneCosts& costs, const FreeMemory& free);
 
 /// Reason why a scene may not fit; empty if it does.

@@ -13,6 +13,8 @@
 
 #include "core/mesh/obj.h"
 #include "export/point_cache.h"
+#include "tests/volume/blocks.h"
+#include "volume/mesh/msh.h"
 
 namespace toile::test {
 
@@ -207,6 +209,13 @@ TEST(Info, DescribesEveryKindOfFile)
         EXPECT_NE(run.output.find(what), std::string::npos) << run.output;
     };
     says("drop.json", "cloth: sheet, cotton");
+    says("drop.json", "on a GPU: 1 quadrature table for 1 cloth or body of");
+    volume::write_msh(folder.path() / "block.msh", make_block(Vec3::Constant(0.1), {2, 2, 2}, 0.0).mesh);
+    folder.write("jelly.json", R"({"toile": 1, "frames": 1, "cloths": [], "soft_bodies": [
+        {"name": "jelly", "file": "block.msh", "young": 2500, "density": 900}]})");
+    says("jelly.json", "soft body: jelly, block.msh, 2500 Pa, 900 kg/m^3\n");
+    says("jelly.json", "simulated vertices: 27\n");
+    says("jelly.json", "memory of the GPU: ");
     folder.write("nod.bvh",
                  "HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Yrotation Xrotation\n"
                  "JOINT head\n{\nOFFSET 0 60 0\nCHANNELS 3 Zrotation Yrotation Xrotation\nEnd Site\n"

@@ -33,7 +33,7 @@ TEST(FillSurface, FillsABallWithGoodTetrahedra)
     const TetMesh mesh = fill_surface(surface, 0.03, "ball");
     const MeshQuality quality = quality_of(mesh);
     EXPECT_EQ(quality.inverted, 0);
-    EXPECT_GT(quality.smallest_dihedral, 2.0);
+    EXPECT_GT(quality.smallest_dihedral, 7.0);
     EXPECT_NEAR(quality.mean_edge, 0.03, 0.01);
     EXPECT_NEAR(quality.volume / solid_moments(surface, "ball").volume, 1.0, 0.05);
 }
@@ -43,7 +43,7 @@ TEST(FillSurface, KeepsSharpEdges)
     const TriangleMesh box = boundary_surface(make_block({0.1, 0.2, 0.1}, {1, 1, 1}).mesh);
     const TetMesh mesh = fill_surface(box, 0.04, "box");
     EXPECT_NEAR(quality_of(mesh).volume, 0.002, 1e-6);
-    EXPECT_GT(quality_of(mesh).smallest_dihedral, 2.0);
+    EXPECT_GT(quality_of(mesh).smallest_dihedral, 7.0);
 }
 
 TEST(FillSurface, GivesTheSameMeshTwice)

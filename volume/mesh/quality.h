@@ -13,4 +13,10 @@ struct MeshQuality {
 };
 MeshQuality quality_of(const TetMesh& mesh);
 
+/// Angle at the edge from a to b between the planes through c and d [degrees].
+double dihedral_angle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/// Smallest angle between two faces of a tetrahedron [degrees].
+double smallest_dihedral(const Tet& tet, View<const Vec3> x);
+
 } // namespace toile::volume

@@ -18,6 +18,7 @@
 #include "core/base/error.h"
 #include "core/base/number.h"
 #include "core/mesh/solid_moments.h"
+#include "volume/mesh/slivers.h"
 
 namespace toile::volume {
 
@@ -122,6 +123,7 @@ TetMesh fill_surface(const TriangleMesh& surface, double cell, const std::string
                            " m are too large to fill it; choose smaller ones");
     orient(
         mesh, [](int t) { return "tetrahedron " + std::to_string(t); }, source);
+    improve_slivers(mesh);
     return mesh;
 }
 
