@@ -13,7 +13,7 @@ ARCHITECTURES := $(if $(CARD),native,90-real)
 DEMO_CUDA := $(if $(filter-out 0,$(GPU)),ON,$(if $(CARD),AUTO,OFF))
 
 FUZZ_TARGETS := $(addprefix fuzz_,abc cache gltf msh obj pattern ply scene usd_frames vtk)
-# What ships; research and the tests of GPUs would double the time. clang compiles it in two thirds of GCC's.
+# What ships; research and the tests of GPUs would double the time.
 SANITIZED_TESTS := $(addprefix test_,core quadrature2d volume garment collision avatars export garment_format scenes preview) $(FUZZ_TARGETS)
 
 configure = cmake --preset $(1) --log-level=WARNING --no-warn-unused-cli -DCMAKE_CUDA_ARCHITECTURES=$(ARCHITECTURES) $(2)
@@ -47,7 +47,7 @@ bench: packages ## Build toile-bench, which measures
 	@cmake --build --preset default --target toile-bench -j $(JOBS)
 	@build/bin/toile-bench --help
 
-sanitize: packages fuzz-packages ## Debug build with sanitizers: both demos, and the tests that are fast
+sanitize: packages ## Debug build with sanitizers: both demos, and the tests that are fast
 	@$(call configure,sanitize,)
 	@cmake --build --preset sanitize --target toile $(SANITIZED_TESTS) -j $(JOBS)
 	@cmake/setup/sanitize.sh build build-sanitize $(JOBS)

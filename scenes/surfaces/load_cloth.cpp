@@ -210,9 +210,10 @@ LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
     loaded.tacks = tacks_of(settings.tacks, state, location + ".tacks");
     for (size_t i = 0; i < scene.attachments.size(); ++i)
         if (scene.attachments[i].cloth == settings.name) {
-            const std::string location = attachment_location(scene, i);
-            state.attachments.push_back(load_attachment(scene.attachments[i], state, colliders, location));
-            warn_of_far_points(scene.attachments[i], state, location, warn);
+            const std::string of_attachment = attachment_location(scene, i);
+            state.attachments.push_back(
+                load_attachment(scene.attachments[i], state, colliders, of_attachment));
+            warn_of_far_points(scene.attachments[i], state, of_attachment, warn);
         }
     return loaded;
 }

@@ -93,8 +93,8 @@ struct World::Parts {
         const Cancellation::Scope cancellation(goes_on);
         StepReport total;
         int done = 0;
-        const LongWork::Scope work([&](const LongWork::Progress& progress) {
-            tell({total.steps + 1, progress.iteration, double(done) / ticks});
+        const LongWork::Scope work([&](const LongWork::Progress& of_step) {
+            tell({total.steps + 1, of_step.iteration, double(done) / ticks});
         });
         while (done < ticks) {
             const auto time_after = [&](int more) { return end - (ticks - done - more) * control.tick(); };
@@ -142,7 +142,7 @@ struct World::Parts {
     {
         constexpr double kAvatars = 0.5, kCloths = 0.9; // parts of the work
         const LongWork::Scope work(
-            [this](const LongWork::Progress& progress) { tell("loading", progress.fraction); });
+            [this](const LongWork::Progress& loading) { tell("loading", loading.fraction); });
         load_avatars(options, kAvatars);
         space = open_backend(options.backend, options.device, scene, options.warn);
         std::vector<SceneCloth> cloths;
@@ -205,7 +205,7 @@ struct World::Parts {
     {
         constexpr int kMaxSteps = 60, kPatience = 5;
         constexpr double kProgress = 0.99;
-        const double dt = control.first() * control.tick(), start = -settle_ticks() * control.tick();
+        const double dt = control.first() * control.tick(), t_start = -settle_ticks() * control.tick();
         const Cancellation::Scope cancellation(goes_on);
         StepReport total;
         for (ClothGroup& group : groups) {
@@ -214,7 +214,7 @@ struct World::Parts {
             for (int k = 0;
                  k < kMaxSteps && stalled < kPatience && !group.has_solids() && group.is_strained(); ++k) {
                 const StageScope stage("scenes/relax_start");
-                const StepReport report = group.relax(dt, start, colliders);
+                const StepReport report = group.relax(dt, t_start, colliders);
                 total.merge(report);
                 if (report.status == StepReport::Status::NonFinite)
                     return total;
