@@ -146,10 +146,10 @@ struct ContactRules {
         // gap's depth.
         const double keep = gap_of(pair);
         term.spring = {stiffness_of(pair), kRampPerGap * keep, kHardPerGap * keep};
-        // What may not cross was on its side at the start, whatever a plane says that was found since.
+        // Cloth never starts across cloth, whatever a plane says that was found since.
         const Vec3 start = at_start(pair);
         double gap_at_start = pair.normal.dot(start - pair.point);
-        if (pair.kind >= ContactKind::kGuard && pinched.recovery == 1.0)
+        if (pair.is_between_cloths())
             gap_at_start = std::max(0.0, gap_at_start);
         const double recovered = gap_at_start + pinched.recovery * max_recovery;
         term.offset = recovered < keep ? recovered : keep;

@@ -146,7 +146,7 @@ std::vector<Piece> pieces_of(const std::vector<Face>& faces,
         for (const int face : piece.faces) {
             if ((flipped[face] != 0) != keep_others)
                 piece.differing.push_back(face);
-            piece.is_closed = piece.is_closed && std::ssize(neighbours[face]) == faces[face].size();
+            piece.is_closed = piece.is_closed && neighbours[face].size() == faces[face].size();
         }
         pieces.push_back(std::move(piece));
     }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -42,6 +41,7 @@ bool is_sliver(const Tet& tet, View<const Vec3> x) { return smallest_dihedral(te
 using Edge = std::pair<int, int>;
 Edge edge_of(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
+/// Moves the vertices of slivers.
 class Improvement {
 public:
     /// @param surface  of the mesh
