@@ -212,8 +212,8 @@ TEST(Info, DescribesEveryKindOfFile)
     says("drop.json", "on a GPU: 1 quadrature table for 1 cloth or body of");
     volume::write_msh(folder.path() / "block.msh", make_block(Vec3::Constant(0.1), {2, 2, 2}, 0.0).mesh);
     folder.write("jelly.json", R"({"toile": 1, "frames": 1, "cloths": [], "soft_bodies": [
-        {"name": "jelly", "file": "block.msh", "young": 2500, "density": 900}]})");
-    says("jelly.json", "soft body: jelly, block.msh, 2500 Pa, 900 kg/m^3\n");
+        {"name": "jelly", "file": "block.msh", "young": 250, "density": 900}]})");
+    says("jelly.json", "soft body: jelly, block.msh, 250 Pa, 900 kg/m^3\n");
     says("jelly.json", "simulated vertices: 27\n");
     says("jelly.json", "memory of the GPU: ");
     folder.write("nod.bvh",

@@ -34,6 +34,7 @@ struct StartBehind {
         rules.max_recovery = kRecovery;
         ContactPair pair;
         pair.kind = kind;
+        pair.collider = 0;
         pair.normal = Vec3::UnitZ();
         pair.vertex = {0, -1, -1, -1};
         pair.weight = {1.0, 0.0, 0.0, 0.0};
