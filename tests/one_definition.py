@@ -21,25 +21,24 @@ ROOMS = ["apps", "avatars", "collision", "core", "export", "garment", "quadratur
 OPENS = re.compile(r"(?:inline )?namespace(?: ([\w:]+))? \{$")
 CLOSES = re.compile(r"\} // namespace")
 DEFINES = re.compile(r"(?:struct|class|union|enum|enum class)(?: alignas\([^)]*\))? (\w+)(?: final)?(?: :.*)?(?: \{.*)?$")
+AHEAD = re.compile(r"[^{]*;$")  # of a declaration alone
 
 
 def definitions(text):
     """(line number, qualified name) of every type that a file defines outside of anonymous namespaces."""
     spaces = []
-    lines = text.splitlines()
-    for number, line in enumerate(lines, start=1):
+    for number, line in enumerate(text.splitlines(), start=1):
         if opened := OPENS.match(line):
             spaces.append(opened[1])
         elif CLOSES.match(line):
             spaces.pop()
-        elif None not in spaces and not lines[number - 2].startswith("template <>") and \
-                (defined := DEFINES.match(line)) and not line.endswith(";"):
+        elif None not in spaces and not AHEAD.match(line) and (defined := DEFINES.match(line)):
             yield number, "::".join([*spaces, defined[1]])
 
 
 def program_of(path):
-    """Folder of the test program that has this source; None: any program may have it."""
-    return path.parts[1] if path.parts[0] == "tests" else None
+    """Folder of the test program that has this source; None: any program may have it, as headers of tests."""
+    return path.parts[1] if path.parts[0] == "tests" and path.suffix in (".cpp", ".cu") else None
 
 
 def failures(root):
@@ -49,6 +48,8 @@ def failures(root):
             if path.suffix in (".h", ".cuh", ".cpp", ".cu"):
                 for number, name in definitions(path.read_text(encoding="utf-8")):
                     places[name].append((path.relative_to(root), number))
+    if not places:
+        yield f"{root}: has no types; name the root of the tree"
     for name, found in sorted(places.items()):
         for k, (path, number) in enumerate(found):
             others = [other for other, _ in found[:k] if program_of(other) in (None, program_of(path))
@@ -63,8 +64,8 @@ def self_test():
         root = pathlib.Path(folder)
         planted = {
             "core/a.cpp": "namespace toile {\n\nstruct Twice {\n};\n\nnamespace {\nclass Local {\n};\n} // namespace\n"
-                          "} // namespace toile\n",
-            "core/b.h": "namespace toile {\nclass Twice : public Other {\n};\nclass Ahead;\n\nnamespace {\nstruct Local {\n"
+                          "enum class Side { kLeft };\n} // namespace toile\n",
+            "core/b.h": "namespace toile {\nclass Twice : public Other {\n};\nclass Ahead;\nenum class Side { kLeft };\n\nnamespace {\nstruct Local {\n"
                         "};\n} // namespace\n} // namespace toile\nnamespace toile::other {\nstruct Twice {\n};\n"
                         "class Ahead;\n} // namespace toile::other\n",
             "tests/core/a.cpp": "struct Case {\n};\n",
@@ -74,7 +75,9 @@ def self_test():
             root.joinpath(name).parent.mkdir(parents=True, exist_ok=True)
             root.joinpath(name).write_text(text, encoding="utf-8")
         found = list(failures(root))
-        assert len(found) == 1 and found[0].startswith("core/b.h:2: toile::Twice is defined in core/a.cpp too"), found
+        assert len(found) == 2, found
+        assert found[0].startswith("core/b.h:5: toile::Side is defined in core/a.cpp too"), found
+        assert found[1].startswith("core/b.h:2: toile::Twice is defined in core/a.cpp too"), found
 
 
 def main():

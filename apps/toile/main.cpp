@@ -1,6 +1,6 @@
-#include "apps/toile/terminal/command_line.h"
 #include <CLI/CLI.hpp>
 
+#include "apps/toile/terminal/command_line.h"
 #include "core/base/blas_memory.h"
 #include "core/compute/cuda/runtime/runtime.h"
 

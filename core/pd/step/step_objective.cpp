@@ -1,7 +1,5 @@
 #include "core/pd/step/step_objective.h"
 
-#include <cmath>
-
 #include "core/linear/field.h"
 #include "core/pd/step/step_error.h"
 #include "core/pd/step/step_kernels.h"
