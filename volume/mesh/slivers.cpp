@@ -24,7 +24,7 @@ constexpr double kSmooth = 0.7;
 /// Angle at the edge between two surface faces [degrees] from which on a tetrahedron may be peeled off.
 constexpr double kFlat = 155.0;
 
-/// Directions of the search: along the axes, and between them.
+/// Directions of the search: along the axes, and along the diagonals of a cube.
 std::vector<Vec3> search_directions()
 {
     std::vector<Vec3> directions;
