@@ -37,8 +37,9 @@ TEST(Slivers, AreOpenedWithoutChangingTheBody)
         int planes = 0; // of the block's surface
         for (const double x : whole.mesh.positions[v])
             planes += x == 0.0 || x == whole.size.x() ? 1 : 0;
-        if (planes >= 2)
+        if (planes >= 2) {
             EXPECT_EQ(mesh.positions[v], whole.mesh.positions[v]) << "at an edge of the block: " << v;
+        }
     }
 }
 
