@@ -142,8 +142,15 @@ double HostNewton::try_local_global()
 
 void HostNewton::take()
 {
+    before_.assign(problem_.x.begin(), problem_.x.end());
     std::copy(trial_.begin(), trial_.end(), problem_.x.begin());
     gradient_.swap(trial_gradient_);
+}
+
+void HostNewton::retake(double length)
+{
+    for (int i = 0; i < problem_.x.size(); ++i)
+        problem_.x[i] = trial_[i] = before_[i] + length * direction_[i];
 }
 
 void HostNewton::keep() { kept_.assign(problem_.x.begin(), problem_.x.end()); }

@@ -46,6 +46,7 @@ public:
     double try_rest(double limit) override;
     double try_local_global() override;
     void take() override;
+    void retake(double length) override;
     void keep() override;
     void restore() override;
     bool has_moved() override;
@@ -62,7 +63,7 @@ private:
     ComponentWeights weights_;
     DirectionStop stop_;
     CoarseAge coarse_age_{HessianSolver::kPriceOfCoarse};
-    std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_, kept_;
+    std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_, before_, kept_;
 
     // Contact ahead, see NewtonSpace::model().
     double contact_here_ = 0.0;                  ///< [J] contact's energy at the current point

@@ -32,6 +32,15 @@ constexpr double kMaxSteps = 1.0 / kNegligible;
 /// setbacks, and the point with the lowest value since the objective last changed is the result.
 constexpr int kStall = 8;
 
+/// A step that contact has moved back may end above its start by a part kRaise of what it had gained [-]. One
+/// that ends higher is made again, kShorter as long [-], up to kRetakes times: where parts of a body are
+/// stopped while the rest of it goes on, its elements are crushed, and directions from there lead nowhere.
+constexpr double kRaise = 0.25, kShorter = 0.4;
+constexpr int kRetakes = 4;
+
+/// Part of its gain [-] that a step which was moved back keeps, unless it is a setback.
+constexpr double kKept = 0.1;
+
 /// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
 /// below any fixed tolerance: cloth that should begin to slide would stay where it is, step after step. The
 /// error of its acceleration is at most about kOfDriving, and vanishes with the step below kDrivingOfStep,
@@ -137,13 +146,17 @@ double steps_to_minimum(const NewtonSpace::Trial& trial, double step)
 }
 
 /// Makes a Newton step.
+/// @param reach  [m] displacement at which the line search begins at most
 /// @return the accepted part of it, 0 if there is none
-double iterate(NewtonSpace& space, const Newton::Settings& settings, OuterLoop::Outcome& outcome)
+double iterate(NewtonSpace& space, const Newton::Settings& settings, double reach,
+               OuterLoop::Outcome& outcome)
 {
     const NewtonSpace::Solution direction = find_corrected_direction(
         space, outcome.iterations == 0, kDirectionError * settings.tolerance, outcome.value);
     NewtonSpace::Trial trial = space.try_step(1.0);
     LineSearch search{outcome.value, trial.slope};
+    if (trial.displacement > reach)
+        trial = space.try_step(search.step = reach / trial.displacement);
     double step = 0.0;
     for (int attempt = 1; search.slope < 0.0; ++attempt) {
         if (search.accepts(trial.value)) {
@@ -167,6 +180,30 @@ double iterate(NewtonSpace& space, const Newton::Settings& settings, OuterLoop::
     return step;
 }
 
+/// Makes a step that contact has moved back to too high a value again, shorter.
+/// @param start, gain  value before the step, and what it gained without contact [J]
+/// @param step         its length [-]
+/// @return true if that has helped
+bool retake(NewtonSpace& space, const Newton::Revise& revise, double start, double gain, double step,
+            OuterLoop::Outcome& outcome)
+{
+    const double whole = outcome.displacement / step;
+    bool has_helped = false, has_moved = true;
+    for (int k = 0; has_moved && k < kRetakes && outcome.value > start + kRaise * gain; ++k) {
+        const double before = outcome.value;
+        step *= kShorter;
+        space.retake(step);
+        revise(MinimiserProgress::kFar);
+        has_moved = space.has_moved();
+        outcome.value = space.evaluate();
+        outcome.displacement = step * whole;
+        has_helped = outcome.value < before;
+        if (!has_helped)
+            break;
+    }
+    return has_helped;
+}
+
 } // namespace
 
 OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene, const Revise& revise,
@@ -180,6 +217,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
         settings.tolerance = std::min(settings.tolerance, tolerance_by_driving(space.driving_speed()));
     const int small_steps = is_calm ? 1 : kSmallSteps;
     double lowest = std::numeric_limits<double>::infinity(), kept_value = lowest;
+    double reach = lowest;
     int since_lowest = 0, small = 0, setbacks = 0;
     for (int look = 0; std::isfinite(outcome.value) && look < settings.max_iterations; ++look) {
         LongWork::iterate(look + 1);
@@ -192,11 +230,12 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
         if (since_lowest > kStall || setbacks > settings.max_setbacks)
             break;
 
+        const double start = outcome.value;
         double step = 0.0;
         outcome.speed = space.max_speed();
         outcome.converged = outcome.speed <= kNegligible * settings.tolerance;
         if (!outcome.converged) {
-            step = iterate(space, settings, outcome);
+            step = iterate(space, settings, reach, outcome);
             small = outcome.converged ? small + 1 : 0;
             outcome.converged = outcome.converged && (small >= small_steps || step == 0.0);
         }
@@ -205,16 +244,22 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
             break;
         outcome.converged = false;
         if (has_changed) {
-            lowest = kept_value = std::numeric_limits<double>::infinity();
+            lowest = std::numeric_limits<double>::infinity();
             small = 0;
         }
         // Cloth may have been moved back by less than counts as a change: stiff terms feel that too.
         const bool has_moved = step > 0.0 && space.has_moved();
+        if (!has_moved)
+            reach *= 2.0;
         if (!has_changed && !has_moved && step > 0.0)
             continue;
-        const double before = outcome.value;
+        const double gain = start - outcome.value;
         outcome.value = space.evaluate();
-        setbacks += has_moved && outcome.value > before ? 1 : 0;
+        if (!has_moved)
+            continue;
+        if (retake(space, revise, start, gain, step, outcome))
+            reach = outcome.displacement;
+        setbacks += start - outcome.value < kKept * gain ? 1 : 0;
     }
     if (setbacks > settings.max_setbacks) {
         space.restore();

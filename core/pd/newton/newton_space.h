@@ -62,11 +62,14 @@ public:
     /// Makes the last trial point the current one.
     virtual void take() = 0;
 
+    /// Makes another point along the direction the current one, from where it was before take().
+    virtual void retake(double length) = 0;
+
     /// Keeps the current point, and returns to the one that was kept last.
     virtual void keep() = 0;
     virtual void restore() = 0;
 
-    /// True if others have moved the current point since take().
+    /// True if others have moved the current point since take() or retake(); before evaluate().
     virtual bool has_moved() = 0;
 
     // The step.

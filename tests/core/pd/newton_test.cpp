@@ -1,5 +1,6 @@
 #include "core/pd/newton/newton.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -39,10 +40,15 @@ public:
     }
     double try_rest(double) override { return std::numeric_limits<double>::infinity(); }
     double try_local_global() override { return 0.0; }
-    void take() override { x = trial_; }
+    void take() override
+    {
+        before_ = x;
+        x = trial_;
+    }
+    void retake(double length) override { x = trial_ = before_ + length * direction_; }
     void keep() override {}
     void restore() override {}
-    bool has_moved() override { return false; }
+    bool has_moved() override { return x != trial_; }
     double driving_speed() override { return 1.0; }
     bool are_fixed_moving() override { return true; }
     double gradient_norm() override { return std::fabs(x); }
@@ -51,7 +57,7 @@ private:
     static double value(double at) { return 0.5 * at * at; }
 
     double hessian_, error_;
-    double direction_ = 0.0, trial_ = 0.0;
+    double direction_ = 0.0, trial_ = 0.0, before_ = 0.0;
 };
 
 /// SpringSpace with contact that never is as a direction sees it: its model falls by a hundredth of what each
@@ -123,6 +129,31 @@ TEST(Newton, DoesNotConvergeByDirectionsThatContactKeepsCorrecting)
     ChatteringSpace space(kTolerance);
     EXPECT_FALSE(minimise(space).converged);
     EXPECT_GT(space.corrections, 0);
+}
+
+/// A step longer than 0.2 m is moved back to where the value is nine times that of the start.
+TEST(Newton, TakesStepsAgainThatContactMovesBackToHigherValues)
+{
+    SpringSpace space(1.0, 0.0);
+    double last = space.x, highest = 0.0;
+    int looks = 0;
+    const auto look = [&](MinimiserProgress) {
+        ++looks;
+        const bool is_long = std::fabs(space.x - last) > 0.2;
+        if (is_long)
+            space.x = 3.0;
+        else {
+            last = space.x;
+            highest = std::max(highest, space.x);
+        }
+        return is_long;
+    };
+    const OuterLoop::Outcome outcome = Newton::minimise(space, {kTolerance, 200, kDt, false}, look, false);
+    EXPECT_TRUE(outcome.converged);
+    EXPECT_LE(std::fabs(space.x), kTolerance * kDt);
+    EXPECT_LT(highest, 1.0);
+    EXPECT_GT(looks, outcome.iterations);
+    EXPECT_LT(looks, 30);
 }
 
 } // namespace

@@ -19,7 +19,7 @@ DeviceNewton::DeviceNewton(const CudaSpace& space, View<const EmbeddedPoint> poi
       device_weights_(space, "newton/weights"), gradient_(space, "newton/gradient", points.size()),
       trial_x_(space, "newton/trial_x", points.size()),
       trial_gradient_(space, "newton/trial_gradient", points.size()),
-      kept_(space, "newton/kept", points.size()),
+      before_(space, "newton/before", points.size()), kept_(space, "newton/kept", points.size()),
       energy_(space, "newton/energy", points.size() + energies.partial_count()),
       direction_(space, "newton/direction", points.size()), base_(space, "newton/base"),
       gradient_without_contact_(space, "newton/gradient_without_contact"),
@@ -225,10 +225,17 @@ double DeviceNewton::try_local_global()
 void DeviceNewton::take()
 {
     parallel_for(space_, "newton/take", trial_x_.size(),
-                 CopyPositions{trial_x_.view(), problem_.x.change_on_device()});
+                 MakeCurrent{trial_x_.view(), problem_.x.change_on_device(), before_.view()});
     std::swap(gradient_, trial_gradient_);
     bound_ = trial_.bound;
     is_frozen_here_ = true;
+}
+
+void DeviceNewton::retake(double length)
+{
+    parallel_for(
+        space_, "newton/retake", trial_x_.size(),
+        Retake{before_.view(), direction_.view(), length, trial_x_.view(), problem_.x.change_on_device()});
 }
 
 void DeviceNewton::keep()

@@ -52,6 +52,7 @@ public:
     double try_rest(double limit) override;
     double try_local_global() override;
     void take() override;
+    void retake(double length) override;
     void keep() override;
     void restore() override;
     bool has_moved() override;
@@ -79,7 +80,7 @@ private:
     NewtonTrialSums trial_;       ///< at the last trial point
     double bound_ = 0.0;          ///< NewtonTrialSums::bound at the current point
     bool is_frozen_here_ = false; ///< the active set's terms are those of the current point
-    DeviceArray<Vec3> gradient_, trial_x_, trial_gradient_, kept_;
+    DeviceArray<Vec3> gradient_, trial_x_, trial_gradient_, before_, kept_;
     DeviceArray<double> energy_;        ///< [vertices and more] parts of the value [J]
     DeviceArray<PaddedVec3> direction_; ///< [vertices] [m]
     DirectionStop stop_;

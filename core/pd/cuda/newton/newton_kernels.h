@@ -30,6 +30,26 @@ struct TryHere {
     TOILE_HD void operator()(int i) const { begin.at(i, x[i], trial); }
 };
 
+/// Makes the trial point the current one, and keeps that.
+struct MakeCurrent {
+    View<const Vec3> trial;
+    View<Vec3> x, before;
+    TOILE_HD void operator()(int i) const
+    {
+        before[i] = x[i];
+        x[i] = trial[i];
+    }
+};
+
+/// Makes another point along the direction the current one.
+struct Retake {
+    View<const Vec3> before;
+    View<const PaddedVec3> direction;
+    double length; ///< [-]
+    View<Vec3> trial, x;
+    TOILE_HD void operator()(int i) const { x[i] = trial[i] = before[i] + length * unpadded(direction[i]); }
+};
+
 /// A step of some length along the direction.
 struct TryAlong {
     View<const Vec3> x;
