@@ -131,7 +131,7 @@ TEST(Newton, DoesNotConvergeByDirectionsThatContactKeepsCorrecting)
     EXPECT_GT(space.corrections, 0);
 }
 
-/// A step longer than 0.2 m is moved back to where the value is nine times that of the start.
+/// A step longer than 0.2 m is moved back, twice as far as it had gone to the other side of its start.
 TEST(Newton, TakesStepsAgainThatContactMovesBackToHigherValues)
 {
     SpringSpace space(1.0, 0.0);
@@ -141,7 +141,7 @@ TEST(Newton, TakesStepsAgainThatContactMovesBackToHigherValues)
         ++looks;
         const bool is_long = std::fabs(space.x - last) > 0.2;
         if (is_long)
-            space.x = 3.0;
+            space.x = last + 2.0 * std::fabs(space.x - last);
         else {
             last = space.x;
             highest = std::max(highest, space.x);
