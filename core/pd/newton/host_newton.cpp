@@ -32,9 +32,8 @@ double HostNewton::speed(double weighted_square) const
 
 double HostNewton::max_speed()
 {
-    const View<const double> weights = weights_.all();
-    return speed(parallel_sum(kCpu, weights.size(), 0.0, [&](int i) {
-        return weights[i] * (gradient_[i] / problem_.inertia[i]).squaredNorm();
+    return stop_.speed(parallel_sum(kCpu, int(gradient_.size()), 0.0, [&](int i) {
+        return problem_.fixed[i] ? 0.0 : gradient_[i].squaredNorm() / problem_.inertia[i];
     }));
 }
 

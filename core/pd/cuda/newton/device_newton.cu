@@ -113,7 +113,7 @@ double DeviceNewton::evaluate()
     return value;
 }
 
-double DeviceNewton::max_speed() { return speed(bound_); }
+double DeviceNewton::max_speed() { return stop_.speed(bound_); }
 
 NewtonSpace::Solution DeviceNewton::find_direction(bool is_first, double error)
 {

@@ -101,7 +101,8 @@ struct NewtonTrialSums {
     double slope = 0.0;           ///< [J] gradient . direction
     double end_slope = 0.0;       ///< [J] likewise at the trial point
     double weighted_square = 0.0; ///< [kg m^2] weight times squared direction
-    double bound = 0.0; ///< [kg m^2] weight times the square of gradient over inertia, at the trial point
+    double bound =
+        0.0; ///< [J] squared gradient over inertia, at the trial point: d . K d of its direction is less
 
     TOILE_HD NewtonTrialSums& operator+=(const NewtonTrialSums& other)
     {
@@ -135,7 +136,7 @@ struct MeasureNewtonTrial {
         sums.slope = gradient[i].dot(d);
         sums.end_slope = trial_gradient[i].dot(d);
         sums.weighted_square = weights[i] * sums.largest_square;
-        sums.bound = weights[i] * (trial_gradient[i] / inertia[i]).squaredNorm();
+        sums.bound = trial_gradient[i].squaredNorm() / inertia[i];
         return sums;
     }
 };
