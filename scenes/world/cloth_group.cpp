@@ -161,7 +161,7 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
 
     // A solver whose every direction was refused leaves the cloth where it is: that is not rest.
     report.unfinished = report.status == StepReport::Status::IterationLimit ? 1 : 0;
-    const bool is_stuck = report.unfinished > 0 && report.iterations == 0;
+    const bool is_stuck = report.unfinished > 0 && (report.iterations == 0 || report.displacement == 0.0);
     judge(t_t1, colliders, report);
     watch_rest(is_stuck, dt);
     return report;

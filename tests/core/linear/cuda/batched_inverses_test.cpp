@@ -65,10 +65,14 @@ TEST_F(BatchedInversesTest, InvertsMatricesOfAllSizesAtOnce)
     std::vector<Eigen::MatrixXd> matrices;
     for (const int size : sizes)
         matrices.push_back(random_spd(size, unsigned(size)));
-    // A row that is the same as another one, and one without entries, have no part in the inverse.
-    matrices[2].row(499) = matrices[2].row(7);
-    matrices[2].col(499) = matrices[2].col(7);
-    matrices[2](499, 499) = matrices[2](7, 7);
+    // Rows that are the same as another one, or nearly so, and one without entries have no part in the
+    // inverse.
+    for (const int same : {400, 499}) {
+        matrices[2].row(same) = matrices[2].row(7);
+        matrices[2].col(same) = matrices[2].col(7);
+        matrices[2](same, same) = matrices[2](7, 7);
+    }
+    matrices[2](400, 400) *= 1.0 + 1e-5;
     matrices[2].row(300).setZero();
     matrices[2].col(300).setZero();
     for (int repeat = 0; repeat < 2; ++repeat) {
@@ -76,14 +80,14 @@ TEST_F(BatchedInversesTest, InvertsMatricesOfAllSizesAtOnce)
         for (size_t m = 0; m < sizes.size(); ++m) {
             Eigen::MatrixXd A = matrices[m];
             if (m == 2)
-                for (const int k : {300, 499}) {
+                for (const int k : {300, 400, 499}) {
                     A.row(k).setZero();
                     A.col(k).setZero();
                     A(k, k) = 1.0;
                 }
             Eigen::MatrixXd expected = A.inverse();
             if (m == 2)
-                expected(300, 300) = expected(499, 499) = 0.0;
+                expected(300, 300) = expected(400, 400) = expected(499, 499) = 0.0;
             const Eigen::VectorXd scale = A.diagonal().cwiseSqrt();
             const Eigen::MatrixXd error = scale.asDiagonal() * (found[m] - expected) * scale.asDiagonal();
             EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-3) << sizes[m] << " rows";
