@@ -244,7 +244,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
             break;
         outcome.converged = false;
         if (has_changed) {
-            lowest = std::numeric_limits<double>::infinity();
+            lowest = kept_value = std::numeric_limits<double>::infinity();
             small = 0;
         }
         // Cloth may have been moved back by less than counts as a change: stiff terms feel that too.
