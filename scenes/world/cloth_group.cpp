@@ -159,7 +159,7 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
         report.message = names() + ": " + report.message;
     report.max_strain = loads_ ? limits_->max_strain_on_device() : limits_->max_strain(body_->positions());
 
-    // A solver whose every direction was refused leaves the cloth where it is: that is not rest.
+    // A solver whose every direction was refused, or the last one, leaves the cloth where it is: not rest.
     report.unfinished = report.status == StepReport::Status::IterationLimit ? 1 : 0;
     const bool is_stuck = report.unfinished > 0 && (report.iterations == 0 || report.displacement == 0.0);
     judge(t_t1, colliders, report);

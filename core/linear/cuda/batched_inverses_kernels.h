@@ -126,8 +126,8 @@ struct SweepColumn {
     static constexpr int kThreads = TileThread::kThreads, kTile = MatrixBatch::kTile;
     static constexpr std::size_t kBytes = sizeof(double) * (2 * MatrixBatch::kTileSize + 4 * kTile);
 
-    /// Smallest pivot [-]. Beside fixed vertices functions depend on others more or less; with pivots of 1e-6
-    /// an inverse of 6e8 was indefinite once it was rounded to single precision.
+    /// Smallest pivot [-] of a row that counts as independent. With 1e-6, an inverse with entries of 6e8 was
+    /// indefinite in single precision: beside fixed vertices there are all degrees of dependence.
     static constexpr double kDependent = 1e-4;
 
     MatrixBatch batch;

@@ -148,8 +148,9 @@ void HostNewton::take()
 
 void HostNewton::retake(double length)
 {
-    for (int i = 0; i < problem_.x.size(); ++i)
-        problem_.x[i] = trial_[i] = before_[i] + length * direction_[i];
+    parallel_for(
+        kCpu, "newton/retake", problem_.x.size(),
+        [&](int i) { problem_.x[i] = trial_[i] = before_[i] + length * direction_[i]; }, kFieldGrain);
 }
 
 void HostNewton::keep() { kept_.assign(problem_.x.begin(), problem_.x.end()); }

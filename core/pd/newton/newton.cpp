@@ -28,8 +28,8 @@ constexpr double kMaxSteps = 1.0 / kNegligible;
 
 /// Iterations without a lower value after which the minimisation ends. Cloth that is moved back because it
 /// would cross, where contact does not hold it, is pushed there again by the next step. If moving it back
-/// raises the value, as where a body pulls it through other cloth, the minimisation ends after a few such
-/// setbacks, and the point with the lowest value since the objective last changed is the result.
+/// undoes what steps gain, as where a body pulls it through other cloth, the minimisation ends after a few
+/// such setbacks, and the point with the lowest value since the objective last changed is the result.
 constexpr int kStall = 8;
 
 /// A step that contact has moved back may end above its start by a part kRaise of what it had gained [-]. One
@@ -38,7 +38,7 @@ constexpr int kStall = 8;
 constexpr double kRaise = 0.25, kShorter = 0.4;
 constexpr int kRetakes = 4;
 
-/// Part of its gain [-] that a step which was moved back keeps, unless it is a setback.
+/// Part of its gain [-] below which a step that was moved back is a setback.
 constexpr double kKept = 0.1;
 
 /// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
@@ -183,7 +183,7 @@ double iterate(NewtonSpace& space, const Newton::Settings& settings, double reac
 /// Makes a step that contact has moved back to too high a value again, shorter.
 /// @param start, gain  value before the step, and what it gained without contact [J]
 /// @param step         its length [-]
-/// @return true if that has helped
+/// @return true if the last one, which is the result, has lowered the value
 bool retake(NewtonSpace& space, const Newton::Revise& revise, double start, double gain, double step,
             OuterLoop::Outcome& outcome)
 {

@@ -15,9 +15,9 @@ namespace toile {
 /// speeds, so an accuracy does not depend on the step length: after a time T the trajectory is within about
 /// 2 T tolerance of the converged one.
 struct Newton {
-    /// Number of setbacks that a minimisation may have: times that its result was moved back, because it
-    /// would cross, to a higher value. Where nothing can give way, no number is enough: after kTries steps in
-    /// succession that ended unfinished there are few, but in every kTries-th step.
+    /// Number of setbacks that a minimisation may have: iterations that were moved back, because they would
+    /// cross, and kept less than a tenth of their gain. Where nothing can give way, no number is enough:
+    /// after kTries steps in succession that ended unfinished there are few, but in every kTries-th step.
     class Patience {
     public:
         int setbacks() const { return unfinished_ < kTries || unfinished_ % kTries == 0 ? kMost : kLeast; }

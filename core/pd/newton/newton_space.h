@@ -62,14 +62,17 @@ public:
     /// Makes the last trial point the current one.
     virtual void take() = 0;
 
-    /// Makes another point along the direction the current one, from where it was before take().
+    /// Makes another point along the direction the trial point and the current one, without evaluation. The
+    /// direction begins where the current point was before take().
+    /// @param length  [-]
     virtual void retake(double length) = 0;
 
     /// Keeps the current point, and returns to the one that was kept last.
     virtual void keep() = 0;
     virtual void restore() = 0;
 
-    /// True if others have moved the current point since take() or retake(); before evaluate().
+    /// True if others have moved the current point since take() or retake(). To be asked before evaluate(),
+    /// which may overwrite the trial point.
     virtual bool has_moved() = 0;
 
     // The step.

@@ -30,10 +30,10 @@ struct TryHere {
     TOILE_HD void operator()(int i) const { begin.at(i, x[i], trial); }
 };
 
-/// Makes the trial point the current one, and keeps that.
+/// Makes the trial point the current one, and keeps where that was.
 struct MakeCurrent {
-    View<const Vec3> trial;
-    View<Vec3> x, before;
+    View<const Vec3> trial; ///< [vertices] [m]
+    View<Vec3> x, before;   ///< [vertices] [m] out
     TOILE_HD void operator()(int i) const
     {
         before[i] = x[i];
@@ -41,12 +41,12 @@ struct MakeCurrent {
     }
 };
 
-/// Makes another point along the direction the current one.
+/// Makes another point along the direction the trial point and the current one.
 struct Retake {
-    View<const Vec3> before;
-    View<const PaddedVec3> direction;
-    double length; ///< [-]
-    View<Vec3> trial, x;
+    View<const Vec3> before;          ///< [vertices] [m] where the direction begins
+    View<const PaddedVec3> direction; ///< [vertices] [m]
+    double length;                    ///< [-]
+    View<Vec3> trial, x;              ///< [vertices] [m] out
     TOILE_HD void operator()(int i) const { x[i] = trial[i] = before[i] + length * unpadded(direction[i]); }
 };
 
