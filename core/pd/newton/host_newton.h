@@ -63,7 +63,8 @@ private:
     ComponentWeights weights_;
     DirectionStop stop_;
     CoarseAge coarse_age_{HessianSolver::kPriceOfCoarse};
-    std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_, before_, kept_;
+    std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_;
+    std::vector<Vec3> before_, kept_; ///< the point before take(), and that of keep() [m]
 
     // Contact ahead, see NewtonSpace::model().
     double contact_here_ = 0.0;                  ///< [J] contact's energy at the current point

@@ -187,21 +187,20 @@ double iterate(NewtonSpace& space, const Newton::Settings& settings, double reac
 bool retake(NewtonSpace& space, const Newton::Revise& revise, double start, double gain, double step,
             OuterLoop::Outcome& outcome)
 {
-    const double whole = outcome.displacement / step;
-    bool has_helped = false, has_moved = true;
-    for (int k = 0; has_moved && k < kRetakes && outcome.value > start + kRaise * gain; ++k) {
+    const double of_direction = outcome.displacement / step; // [m]
+    bool falls = true, has_moved = true;
+    int retakes = 0;
+    for (; falls && has_moved && retakes < kRetakes && outcome.value > start + kRaise * gain; ++retakes) {
         const double before = outcome.value;
         step *= kShorter;
         space.retake(step);
         revise(MinimiserProgress::kFar);
         has_moved = space.has_moved();
         outcome.value = space.evaluate();
-        outcome.displacement = step * whole;
-        has_helped = outcome.value < before;
-        if (!has_helped)
-            break;
+        outcome.displacement = step * of_direction;
+        falls = outcome.value < before;
     }
-    return has_helped;
+    return retakes > 0 && falls;
 }
 
 } // namespace

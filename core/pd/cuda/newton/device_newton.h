@@ -80,7 +80,8 @@ private:
     NewtonTrialSums trial_;       ///< at the last trial point
     double bound_ = 0.0;          ///< NewtonTrialSums::bound at the current point
     bool is_frozen_here_ = false; ///< the active set's terms are those of the current point
-    DeviceArray<Vec3> gradient_, trial_x_, trial_gradient_, before_, kept_;
+    DeviceArray<Vec3> gradient_, trial_x_, trial_gradient_;
+    DeviceArray<Vec3> before_, kept_;   ///< [vertices] the point before take(), and that of keep() [m]
     DeviceArray<double> energy_;        ///< [vertices and more] parts of the value [J]
     DeviceArray<PaddedVec3> direction_; ///< [vertices] [m]
     DirectionStop stop_;

@@ -101,8 +101,7 @@ struct NewtonTrialSums {
     double slope = 0.0;           ///< [J] gradient . direction
     double end_slope = 0.0;       ///< [J] likewise at the trial point
     double weighted_square = 0.0; ///< [kg m^2] weight times squared direction
-    double bound =
-        0.0; ///< [J] squared gradient over inertia, at the trial point: d . K d of its direction is less
+    double bound = 0.0;           ///< [J] squared gradient over inertia, at least d . K d, at the trial point
 
     TOILE_HD NewtonTrialSums& operator+=(const NewtonTrialSums& other)
     {
