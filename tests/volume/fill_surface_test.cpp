@@ -46,6 +46,14 @@ TEST(FillSurface, KeepsSharpEdges)
     EXPECT_GT(quality_of(mesh).smallest_dihedral, 7.0);
 }
 
+TEST(FillSurface, FillsAPlateThinnerThanItsCells)
+{
+    const TriangleMesh plate = boundary_surface(make_block({0.05, 0.05, 0.002}, {1, 1, 1}).mesh);
+    const MeshQuality quality = quality_of(fill_surface(plate, 0.02, "plate"));
+    EXPECT_NEAR(quality.volume / 5e-6, 1.0, 0.05);
+    EXPECT_GT(quality.smallest_dihedral, 7.0);
+}
+
 TEST(FillSurface, GivesTheSameMeshTwice)
 {
     const TriangleMesh surface = ball(0.1);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volume/mesh/quality.h"
+#include "volume/mesh/vertex_freedom.h"
 
 namespace toile::volume {
 
@@ -16,10 +17,6 @@ namespace {
 /// Passes over the slivers; halvings of a search's step, which begins with kReach of the shortest edge.
 constexpr int kPasses = 8, kHalvings = 6;
 constexpr double kReach = 0.25;
-
-/// Cosine of the angle up to which a surface is smooth: between faces at an edge, and between a face and the
-/// mean normal at a vertex.
-constexpr double kSmooth = 0.7;
 
 /// Angle at the edge between two surface faces [degrees] from which on a tetrahedron may be peeled off.
 constexpr double kFlat = 155.0;
@@ -46,13 +43,11 @@ class Improvement {
 public:
     /// @param surface  of the mesh
     Improvement(TetMesh& mesh, View<const Triangle> surface)
-        : mesh_(mesh), tets_of_(mesh.positions.size()), freedom_(mesh.positions.size(), Freedom::Space),
-          normal_(mesh.positions.size(), Vec3::Zero())
+        : mesh_(mesh), tets_of_(mesh.positions.size()), freedom_(vertex_freedom(mesh.positions, surface))
     {
         for (int t = 0; t < mesh.tet_count(); ++t)
             for (const int v : mesh.tets[t])
                 tets_of_[v].push_back(t);
-        hold_sharp(surface);
     }
 
     /// @return true if an angle has become larger
@@ -64,41 +59,12 @@ public:
                 at_slivers.insert(tet.begin(), tet.end());
         bool has_moved = false;
         for (const int v : at_slivers)
-            if (freedom_[v] != Freedom::None)
+            if (freedom_.of[v] != Freedom::None)
                 has_moved = improve(v) || has_moved;
         return has_moved;
     }
 
 private:
-    enum class Freedom : unsigned char { None, Plane, Space };
-
-    /// Holds the vertices of edges at which the surface bends, and of points.
-    void hold_sharp(View<const Triangle> faces)
-    {
-        std::map<Edge, Vec3> normal_beside;
-        for (const Triangle& face : faces)
-            for (int k = 0; k < 3; ++k) {
-                const int a = face[k], b = face[(k + 1) % 3];
-                const Vec3 normal = area_normal(face);
-                normal_[a] += normal;
-                if (freedom_[a] == Freedom::Space)
-                    freedom_[a] = Freedom::Plane;
-                const auto [beside, is_first] = normal_beside.try_emplace(edge_of(a, b), normal);
-                if (!is_first && beside->second.normalized().dot(normal.normalized()) < kSmooth)
-                    freedom_[a] = freedom_[b] = Freedom::None;
-            }
-        for (const Triangle& face : faces)
-            for (const int v : face)
-                if (area_normal(face).normalized().dot(normal_[v].normalized()) < kSmooth)
-                    freedom_[v] = Freedom::None;
-    }
-
-    Vec3 area_normal(const Triangle& t) const
-    {
-        const std::vector<Vec3>& x = mesh_.positions;
-        return 0.5 * (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
-    }
-
     double smallest_around(int v) const
     {
         double smallest = 180.0;
@@ -123,14 +89,14 @@ private:
     bool improve(int v)
     {
         Vec3& x = mesh_.positions[v];
-        const Vec3 normal = normal_[v].normalized();
+        const Vec3 normal = freedom_.normal[v].normalized();
         const double before = smallest_around(v);
         double largest = before, step = kReach * shortest_edge(v);
         for (int k = 0; k < kHalvings; ++k, step *= 0.5) {
             const Vec3 centre = x;
             Vec3 best = centre;
             for (Vec3 direction : directions_) {
-                if (freedom_[v] == Freedom::Plane)
+                if (freedom_.of[v] == Freedom::Plane)
                     direction -= normal * normal.dot(direction);
                 x = centre + step * direction;
                 if (const double angle = smallest_around(v); angle > largest) {
@@ -145,8 +111,7 @@ private:
 
     TetMesh& mesh_;
     std::vector<std::vector<int>> tets_of_;
-    std::vector<Freedom> freedom_; ///< [vertices] to move: those of a smooth surface within it
-    std::vector<Vec3> normal_;     ///< [vertices] of the surface, any length
+    VertexFreedom freedom_; ///< of the surface at the start
     const std::vector<Vec3> directions_ = search_directions();
 };
 

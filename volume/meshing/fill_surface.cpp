@@ -1,7 +1,8 @@
 #include "volume/meshing/fill_surface.h"
 
-#include <cstdio>
+#include <cmath>
 #include <map>
+#include <numeric>
 #include <vector>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -14,10 +15,13 @@
 #include <CGAL/Polyhedral_mesh_domain_with_features_3.h>
 #include <CGAL/Random.h>
 #include <CGAL/make_mesh_3.h>
+#include <CGAL/odt_optimize_mesh_3.h>
+#include <CGAL/refine_mesh_3.h>
 
 #include "core/base/error.h"
 #include "core/base/number.h"
 #include "core/mesh/solid_moments.h"
+#include "volume/mesh/short_edges.h"
 #include "volume/mesh/slivers.h"
 
 namespace toile::volume {
@@ -38,6 +42,18 @@ constexpr double kSharp = 60.0;
 /// Sweeps of smoothing. CGAL's perturbation and exudation would leave better angles, but go through cells in
 /// the order of their addresses, so that no two runs agree.
 constexpr int kSmoothings = 20;
+
+/// Part of the volume [-] that smoothing may change. In thin parts it loses tetrahedra at the surface.
+constexpr double kSmoothed = 0.01;
+
+/// Parts of a surface's volume [-]. Cells of its radius leave kThin of a ball out; with more than that
+/// missing, parts are too thin for the cells, and tetrahedra have to have a manifold surface, for which CGAL
+/// makes them finer there. No more than kUnfilled may be left out in the end.
+constexpr double kThin = 0.15, kUnfilled = 0.35;
+
+/// Length of edges that are collapsed [cells]: where sharp edges of a rough surface zigzag or nearly meet,
+/// CGAL makes them as short as need be.
+constexpr double kShort = 0.1;
 
 /// Volume of a regular tetrahedron with edges of length 1.
 constexpr double kRegularVolume = 0.11785;
@@ -97,6 +113,43 @@ TetMesh mesh_of(const Complex& complex)
     return mesh;
 }
 
+double total_volume(const TetMesh& mesh)
+{
+    return std::accumulate(mesh.tets.begin(), mesh.tets.end(), 0.0, [&](double sum, const Tet& tet) {
+        return sum + std::fabs(volume_of(tet, mesh.positions));
+    });
+}
+
+/// Tetrahedra with vertices moved to where their shapes are better, or as they are if that changes the
+/// volume.
+TetMesh smoothed(Complex& complex, const Domain& domain)
+{
+    TetMesh mesh = mesh_of(complex);
+    CGAL::odt_optimize_mesh_3(complex, domain, CGAL::parameters::max_iteration_number = kSmoothings);
+    TetMesh smooth = mesh_of(complex);
+    const double volume = total_volume(mesh);
+    return std::fabs(total_volume(smooth) - volume) <= kSmoothed * volume ? smooth : mesh;
+}
+
+/// @param volume  of the surface [m^3]
+TetMesh tets_in(const Domain& domain, double cell, double volume)
+{
+    // Sizes bound the radii of circles and spheres around triangles and tetrahedra.
+    namespace parameters = CGAL::parameters;
+    constexpr double kTriangle = 0.6, kTetrahedron = 0.65, kDistance = 0.1; // of an edge
+    const Criteria criteria(
+        parameters::edge_size = cell, parameters::facet_angle = 25.0,
+        parameters::facet_size = kTriangle * cell, parameters::facet_distance = kDistance * cell,
+        parameters::cell_radius_edge_ratio = 2.0, parameters::cell_size = kTetrahedron * cell);
+    Complex complex =
+        CGAL::make_mesh_3<Complex>(domain, criteria, parameters::no_odt(), parameters::no_lloyd(),
+                                   parameters::no_perturb(), parameters::no_exude());
+    if (total_volume(mesh_of(complex)) < (1.0 - kThin) * volume)
+        CGAL::refine_mesh_3(complex, domain, criteria, parameters::no_odt(), parameters::no_lloyd(),
+                            parameters::no_perturb(), parameters::no_exude(), parameters::manifold());
+    return smoothed(complex, domain);
+}
+
 } // namespace
 
 TetMesh fill_surface(const TriangleMesh& surface, double cell, const std::string& source)
@@ -107,22 +160,22 @@ TetMesh fill_surface(const TriangleMesh& surface, double cell, const std::string
     Domain domain(polyhedron, &CGAL::get_default_random());
     domain.detect_features(kSharp);
 
-    // Sizes bound the radii of circles and spheres around triangles and tetrahedra.
-    namespace parameters = CGAL::parameters;
-    constexpr double kTriangle = 0.6, kTetrahedron = 0.65, kDistance = 0.1; // of an edge
-    const Criteria criteria(
-        parameters::edge_size = cell, parameters::facet_angle = 25.0,
-        parameters::facet_size = kTriangle * cell, parameters::facet_distance = kDistance * cell,
-        parameters::cell_radius_edge_ratio = 2.0, parameters::cell_size = kTetrahedron * cell);
-    const Complex complex = CGAL::make_mesh_3<Complex>(
-        domain, criteria, parameters::odt(parameters::max_iteration_number = kSmoothings),
-        parameters::no_perturb(), parameters::no_exude());
-    TetMesh mesh = mesh_of(complex);
-    if (mesh.tets.empty())
-        throw InvalidInput(source + ": cells of " + short_text(cell) +
-                           " m are too large to fill it; choose smaller ones");
+    const double volume = solid_moments(surface, source).volume;
+    const std::string cells = source + ": cells of " + short_text(cell) + " m ";
+    TetMesh mesh;
+    try {
+        mesh = tets_in(domain, cell, volume);
+    } catch (const CGAL::Failure_exception& error) {
+        throw InvalidInput(
+            cells + "do not fit the surface; try smaller or larger ones (CGAL: " + error.message() + ")");
+    }
+    const double unfilled = 1.0 - total_volume(mesh) / volume;
+    if (unfilled > kUnfilled)
+        throw InvalidInput(cells + "leave " + short_text(100.0 * unfilled) +
+                           " % of its volume out; choose smaller ones");
     orient(
         mesh, [](int t) { return "tetrahedron " + std::to_string(t); }, source);
+    collapse_short_edges(mesh, kShort * cell);
     improve_slivers(mesh);
     return mesh;
 }

@@ -1,0 +1,87 @@
+#include "volume/mesh/short_edges.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tests/volume/blocks.h"
+#include "volume/mesh/quality.h"
+
+namespace toile::test {
+
+using namespace volume;
+
+namespace {
+
+constexpr double kShort = 0.01; // [m] edges of the block are of 0.1 m
+
+Block block() { return make_block(Vec3::Constant(0.3), {3, 3, 3}); }
+
+/// The block with a vertex moved to 2 mm beside another, and the short edge collapsed.
+TetMesh collapsed(int vertex, int other)
+{
+    TetMesh mesh = block().mesh;
+    const Vec3 to_other = mesh.positions[other] - mesh.positions[vertex];
+    mesh.positions[vertex] += 0.98 * to_other;
+    EXPECT_EQ(quality_of(mesh).inverted, 0);
+    EXPECT_NEAR(quality_of(mesh).volume, 0.027, 1e-12);
+    collapse_short_edges(mesh, kShort);
+    return mesh;
+}
+
+double shortest_edge(const TetMesh& mesh)
+{
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const Tet& tet : mesh.tets)
+        for (int i = 0; i < 4; ++i)
+            for (int j = i + 1; j < 4; ++j)
+                shortest = std::min(shortest, (mesh.positions[tet[j]] - mesh.positions[tet[i]]).norm());
+    return shortest;
+}
+
+void expect_block_without_a_vertex(const TetMesh& mesh)
+{
+    EXPECT_EQ(mesh.vertex_count(), block().mesh.vertex_count() - 1);
+    EXPECT_GT(shortest_edge(mesh), kShort);
+    const MeshQuality quality = quality_of(mesh);
+    EXPECT_EQ(quality.inverted, 0);
+    EXPECT_NEAR(quality.volume, 0.027, 1e-12);
+    EXPECT_GT(quality.smallest_dihedral, 8.0);
+    const TriangleMesh surface = boundary_surface(mesh);
+    EXPECT_EQ(surface.vertex_count() - int(surface.triangles.size()) / 2, 2) << "Euler's formula";
+}
+
+TEST(ShortEdges, AreNotFoundInAGoodMesh)
+{
+    TetMesh mesh = block().mesh;
+    collapse_short_edges(mesh, kShort);
+    EXPECT_EQ(mesh.positions, block().mesh.positions);
+    EXPECT_EQ(mesh.tets, block().mesh.tets);
+}
+
+TEST(ShortEdges, CollapseInside)
+{
+    const Block b = block();
+    expect_block_without_a_vertex(collapsed(b.at(1, 1, 1), b.at(2, 1, 1)));
+}
+
+TEST(ShortEdges, CollapseToTheLessFreeEnd)
+{
+    const Block b = block();
+    expect_block_without_a_vertex(collapsed(b.at(0, 1, 1), b.at(0, 0, 1))); // a face's vertex beside an edge
+    expect_block_without_a_vertex(collapsed(b.at(1, 1, 1), b.at(0, 1, 1))); // an inner one beside a face
+}
+
+/// Collapsed, the rim would be an edge like a knife's.
+TEST(ShortEdges, StayAtTheRimOfAPlate)
+{
+    const TetMesh plate = make_block(Vec3(0.3, 0.3, 0.8 * kShort), {3, 3, 1}).mesh;
+    TetMesh mesh = plate;
+    collapse_short_edges(mesh, kShort);
+    EXPECT_EQ(mesh.tets, plate.tets);
+}
+
+} // namespace
+
+} // namespace toile::test
