@@ -21,6 +21,13 @@ double longest(const std::vector<std::array<int, 2>>& threads, View<const Vec3> 
     return most;
 }
 
+bool is_of_one_panel(const garment::Seam& seam)
+{
+    const auto is_on_it = [&](const garment::EdgePart& part) { return part.panel == seam.a[0].panel; };
+    return std::all_of(seam.a.begin(), seam.a.end(), is_on_it) &&
+           std::all_of(seam.b.begin(), seam.b.end(), is_on_it);
+}
+
 } // namespace
 
 SeamClosing::SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x, std::vector<int> order)
@@ -130,7 +137,7 @@ std::vector<int> orders_of(const garment::Pattern& pattern)
 {
     std::vector<int> orders;
     for (const garment::Seam& seam : pattern.seams)
-        orders.push_back(seam.order);
+        orders.push_back(2 * seam.order + (is_of_one_panel(seam) ? 0 : 1));
     return orders;
 }
 

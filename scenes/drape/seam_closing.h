@@ -65,7 +65,8 @@ private:
     std::vector<double> welded_gap_; ///< [seams] longest when it was welded [m]
 };
 
-/// Order of each seam of a pattern.
+/// Order of each seam of a pattern. Seams of a panel with itself come before others of their order: what
+/// pulls on a sleeve that is no tube yet twists its edges around each other.
 std::vector<int> orders_of(const garment::Pattern& pattern);
 
 } // namespace toile::scenes

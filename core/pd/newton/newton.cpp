@@ -183,9 +183,11 @@ double iterate(NewtonSpace& space, const Newton::Settings& settings, double reac
 /// Makes a step that contact has moved back to too high a value again, shorter.
 /// @param start, gain  value before the step, and what it gained without contact [J]
 /// @param step         its length [-]
-/// @return true if the last one, which is the result, has lowered the value
+/// @param reach        [m] becomes the displacement of the best one, if it ends lower than what was moved
+/// back
+/// @return true if it was made again; the last one is the result
 bool retake(NewtonSpace& space, const Newton::Revise& revise, double start, double gain, double step,
-            OuterLoop::Outcome& outcome)
+            double& reach, OuterLoop::Outcome& outcome)
 {
     const double of_direction = outcome.displacement / step; // [m]
     bool falls = true, has_moved = true;
@@ -199,8 +201,10 @@ bool retake(NewtonSpace& space, const Newton::Revise& revise, double start, doub
         outcome.value = space.evaluate();
         outcome.displacement = step * of_direction;
         falls = outcome.value < before;
+        if (falls)
+            reach = outcome.displacement;
     }
-    return retakes > 0 && falls;
+    return retakes > 0;
 }
 
 } // namespace
@@ -256,8 +260,8 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
         outcome.value = space.evaluate();
         if (!has_moved)
             continue;
-        if (retake(space, revise, start, gain, step, outcome))
-            reach = outcome.displacement;
+        if (retake(space, revise, start, gain, step, reach, outcome))
+            small = 0;
         setbacks += start - outcome.value < kKept * gain ? 1 : 0;
     }
     if (setbacks > settings.max_setbacks) {

@@ -135,6 +135,26 @@ TEST_F(SeamClosingTest, SewsSeamsOfALowerOrderFirst)
     EXPECT_GT(seams.weld(), 0);
 }
 
+TEST(SeamOrder, PutsSeamsOfOnePanelBeforeOthersOfTheirOrder)
+{
+    const auto seam = [](int order, int a, int b) {
+        garment::Seam seam;
+        seam.order = order;
+        seam.a.emplace_back().panel = a;
+        seam.b.emplace_back().panel = b;
+        return seam;
+    };
+    garment::Pattern pattern;
+    pattern.seams = {seam(0, 0, 1), seam(0, 2, 2), seam(1, 3, 3), seam(1, 0, 3)};
+    const std::vector<int> order = orders_of(pattern);
+    EXPECT_LT(order[1], order[0]);
+    EXPECT_LT(order[0], order[2]);
+    EXPECT_LT(order[2], order[3]);
+
+    pattern.seams[1].b.emplace_back().panel = 0; // goes on to another panel
+    EXPECT_EQ(orders_of(pattern)[1], orders_of(pattern)[0]);
+}
+
 } // namespace
 
 } // namespace toile::test
