@@ -137,7 +137,7 @@ TEST_F(SeamClosingTest, SewsSeamsOfALowerOrderFirst)
 
 TEST(SeamOrder, PutsSeamsOfOnePanelBeforeOthersOfTheirOrder)
 {
-    const auto seam = [](int order, int a, int b) {
+    const auto between = [](int order, int a, int b) {
         garment::Seam seam;
         seam.order = order;
         seam.a.emplace_back().panel = a;
@@ -145,7 +145,7 @@ TEST(SeamOrder, PutsSeamsOfOnePanelBeforeOthersOfTheirOrder)
         return seam;
     };
     garment::Pattern pattern;
-    pattern.seams = {seam(0, 0, 1), seam(0, 2, 2), seam(1, 3, 3), seam(1, 0, 3)};
+    pattern.seams = {between(0, 0, 1), between(0, 2, 2), between(1, 3, 3), between(1, 0, 3)};
     const std::vector<int> order = orders_of(pattern);
     EXPECT_LT(order[1], order[0]);
     EXPECT_LT(order[0], order[2]);
