@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 from solids import Solid, capsule
 
 LOWEST_LEAF = 0.55  # [m]
-LEAF_OF_CORNERS = [(0, 1, 2, 3), (1, 2, 3, 4), (2, 3, 4, 5), (0, 2, 3, 6), (2, 3, 5, 6)]  # a ring about the edge 2 3
+LEAF_OF_CORNERS = [(0, 1, 2, 3), (1, 2, 3, 4), (2, 3, 4, 5), (0, 3, 2, 6), (2, 3, 5, 6)]  # a ring about the edge 2 3
 
 
 def segments_of(levels, thinnest=0.009):
@@ -63,6 +63,12 @@ def leaf_on(a, b, c, length):
     return np.array([c + 0.1 * length * normal, middle + half, c + onwards, middle - half]), middle
 
 
+def edges_of(points, cells):
+    """From the first corner of tetrahedra to the others [m, 3, 3]."""
+    cells = np.asarray(cells)
+    return points[cells[:, 1:]] - points[cells[:, :1]]
+
+
 def with_leaves(vertices, tetrahedra, distance, count, length):
     """The tree and `count` leaves of this length [m], none of which touches another or a branch.
 
@@ -92,7 +98,9 @@ def with_leaves(vertices, tetrahedra, distance, count, length):
         normal = np.cross(b - a, c - a)
         rises = ((around - a) @ normal).max() > 0.02 * np.linalg.norm(b - a) * np.linalg.norm(normal)
         small = np.linalg.norm(normal) < (0.15 * length) ** 2
-        if small or close or rises or middle[1] < LOWEST_LEAF or distance(leaf[1:]).min() < 0.2 * length:
+        edges = edges_of(np.concatenate([vertices[bark[face]], leaf]), LEAF_OF_CORNERS)
+        overlaps = np.linalg.det(edges).min() <= 0
+        if small or close or rises or overlaps or middle[1] < LOWEST_LEAF or distance(leaf[1:]).min() < 0.2 * length:
             continue
         middles.setdefault(tuple(cell), []).append(middle)
         first_vertex = len(vertices) + 4 * (len(points) - 1)
@@ -102,7 +110,4 @@ def with_leaves(vertices, tetrahedra, distance, count, length):
     if count:
         raise SystemExit(f"tree: no place for {count} of the leaves; give fewer by --count")
     points, cells = np.concatenate(points), np.concatenate(cells)
-    edges = points[cells[:, 1:]] - points[cells[:, :1]]
-    inverted = np.linalg.det(edges) < 0
-    cells[inverted] = cells[inverted][:, [1, 0, 2, 3]]
     return points, cells

@@ -82,6 +82,36 @@ TEST(ShortEdges, StayAtTheRimOfAPlate)
     EXPECT_EQ(mesh.tets, plate.tets);
 }
 
+/// Filled by a collapse, a dent would swallow what stands in it.
+TEST(ShortEdges, StayWhereTheSurfaceWouldCrossItself)
+{
+    const Block b = block();
+    TetMesh mesh = b.mesh;
+    mesh.positions[b.at(1, 1, 3)] = Vec3(0.19, 0.1, 0.2992);
+    const Vec3 low(0.17, 0.1, 0.2997);
+    const int first = mesh.vertex_count();
+    for (const Vec3& x :
+         {Vec3(0.0, 0.0, 0.0), Vec3(0.001, 0.0, 0.001), Vec3(0.0, 0.001, 0.001), Vec3(0.0, 0.0, 0.001)})
+        mesh.positions.push_back(low + x);
+    mesh.tets.push_back({first, first + 1, first + 2, first + 3});
+    orient(
+        mesh, [](int) { return ""; }, "block");
+    ASSERT_EQ(quality_of(mesh).inverted, 0);
+    collapse_short_edges(mesh, 3.0 * kShort);
+    for (Tet tet : mesh.tets) {
+        if (mesh.positions[tet[0]].z() > 0.2996 && mesh.positions[tet[1]].z() > 0.2996 &&
+            mesh.positions[tet[2]].z() > 0.2996 && mesh.positions[tet[3]].z() > 0.2996)
+            continue; // what stands in the dent
+        int inside = 0;
+        for (int k = 0; k < 4; ++k) {
+            std::vector<Vec3> x = mesh.positions;
+            x[tet[k]] = low;
+            inside += volume_of(tet, x) > 0.0 ? 1 : 0;
+        }
+        EXPECT_LT(inside, 4);
+    }
+}
+
 } // namespace
 
 } // namespace toile::test

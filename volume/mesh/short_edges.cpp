@@ -1,12 +1,15 @@
 #include "volume/mesh/short_edges.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "volume/mesh/quality.h"
 #include "volume/mesh/vertex_freedom.h"
@@ -136,6 +139,67 @@ private:
         return volume;
     }
 
+    /// Corners of the surface triangle of a tetrahedron outside, when `from` has become `to`.
+    std::array<int, 3> surface_triangle(int t, int from, int to) const
+    {
+        std::array<int, 3> triangle;
+        std::copy_if(tets_[t].begin(), tets_[t].end(), triangle.begin(),
+                     [&](int v) { return v != outside_; });
+        std::replace(triangle.begin(), triangle.end(), from, to);
+        return triangle;
+    }
+
+    /// True if the segment from p to q passes through the triangle.
+    bool crosses(int p, int q, const std::array<int, 3>& triangle) const
+    {
+        const auto [a, b, c] = triangle;
+        const View<const Vec3> x = mesh_.positions;
+        if (volume_of({a, b, c, p}, x) * volume_of({a, b, c, q}, x) >= 0.0)
+            return false;
+        const auto [least, most] =
+            std::minmax({volume_of({p, q, a, b}, x), volume_of({p, q, b, c}, x), volume_of({p, q, c, a}, x)});
+        return least > 0.0 || most < 0.0;
+    }
+
+    /// True if an edge of the first triangle without a corner of the other passes through that.
+    bool edges_cross(const std::array<int, 3>& edges, const std::array<int, 3>& triangle) const
+    {
+        const auto is_free = [&](int v) {
+            return std::find(triangle.begin(), triangle.end(), v) == triangle.end();
+        };
+        for (int k = 0; k < 3; ++k)
+            if (const int p = edges[k], q = edges[(k + 1) % 3];
+                is_free(p) && is_free(q) && crosses(p, q, triangle))
+                return true;
+        return false;
+    }
+
+    /// True if the surface at a vertex that has moved to another crosses the surface elsewhere.
+    bool crosses_surface(int from, int to) const
+    {
+        std::vector<std::array<int, 3>> moved;
+        Eigen::AlignedBox3d box;
+        for (const int t : tets_of_[from])
+            if (is_left_[t] && !is_inside(t) && !has(t, to)) {
+                moved.push_back(surface_triangle(t, from, to));
+                for (const int v : moved.back())
+                    box.extend(mesh_.positions[v]);
+            }
+        for (const int t : tets_of_[outside_]) {
+            if (moved.empty() || !is_left_[t] || (has(t, from) && has(t, to)))
+                continue;
+            const std::array<int, 3> other = surface_triangle(t, from, to);
+            Eigen::AlignedBox3d around;
+            for (const int v : other)
+                around.extend(mesh_.positions[v]);
+            if (box.intersects(around) && std::any_of(moved.begin(), moved.end(), [&](const auto& triangle) {
+                    return edges_cross(triangle, other) || edges_cross(other, triangle);
+                }))
+                return true;
+        }
+        return false;
+    }
+
     bool collapse(int a, int b)
     {
         if (!keeps_topology(a, b))
@@ -153,7 +217,8 @@ private:
         const Vec3 at = std::exchange(mesh_.positions[from], mesh_.positions[to]);
         const double angle = smallest_angle(from, to);
         const double change = std::fabs(volume_at(from, to) - volume);
-        if (!(angle > 0.0 && angle >= std::min(before, kSmallest) && change <= std::pow(length_, 3))) {
+        if (!(angle > 0.0 && angle >= std::min(before, kSmallest) && change <= std::pow(length_, 3) &&
+              !crosses_surface(from, to))) {
             mesh_.positions[from] = at;
             return false;
         }
