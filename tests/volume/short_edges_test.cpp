@@ -98,10 +98,10 @@ TEST(ShortEdges, StayWhereTheSurfaceWouldCrossItself)
         mesh, [](int) { return ""; }, "block");
     ASSERT_EQ(quality_of(mesh).inverted, 0);
     collapse_short_edges(mesh, 3.0 * kShort);
-    for (Tet tet : mesh.tets) {
-        if (mesh.positions[tet[0]].z() > 0.2996 && mesh.positions[tet[1]].z() > 0.2996 &&
-            mesh.positions[tet[2]].z() > 0.2996 && mesh.positions[tet[3]].z() > 0.2996)
-            continue; // what stands in the dent
+    for (const Tet& tet : mesh.tets) {
+        const auto stands_in_dent = [&](int v) { return mesh.positions[v].z() >= low.z(); };
+        if (std::all_of(tet.begin(), tet.end(), stands_in_dent))
+            continue;
         int inside = 0;
         for (int k = 0; k < 4; ++k) {
             std::vector<Vec3> x = mesh.positions;

@@ -58,9 +58,9 @@ constexpr double kShort = 0.1;
 /// Volume of a regular tetrahedron with edges of length 1.
 constexpr double kRegularVolume = 0.11785;
 
-void require_fillable(const TriangleMesh& surface, double cell, const std::string& source)
+/// @param volume  of the surface [m^3]
+void require_fillable(const TriangleMesh& surface, double volume, double cell, const std::string& source)
 {
-    const double volume = solid_moments(surface, source).volume;
     const double tets = volume / (kRegularVolume * cell * cell * cell);
     if (tets > kMaxTets)
         throw InvalidInput(source + ": cells of " + short_text(cell) + " m make about " + short_text(tets) +
@@ -154,13 +154,13 @@ TetMesh tets_in(const Domain& domain, double cell, double volume)
 
 TetMesh fill_surface(const TriangleMesh& surface, double cell, const std::string& source)
 {
-    require_fillable(surface, cell, source);
+    const double volume = solid_moments(surface, source).volume;
+    require_fillable(surface, volume, cell, source);
     CGAL::get_default_random() = CGAL::Random(0);
     Polyhedron polyhedron = polyhedron_of(surface, source);
     Domain domain(polyhedron, &CGAL::get_default_random());
     domain.detect_features(kSharp);
 
-    const double volume = solid_moments(surface, source).volume;
     const std::string cells = source + ": cells of " + short_text(cell) + " m ";
     TetMesh mesh;
     try {
