@@ -5,30 +5,11 @@
 
 #include "core/compute/parallel.h"
 #include "core/pd/newton/block_cholesky.h"
-#include "core/pd/newton/components.h"
-#include "core/quadrature/clusters/cluster_basis.h"
+#include "core/pd/newton/connected_clusters.h"
 
 namespace toile {
 
 namespace {
-
-/// Level of the cluster tree: leaves of 8 vertices, doubled three times.
-constexpr int kLevel = 3;
-
-/// Values of the functions of the cluster of level `level` that contains a slot.
-template <int kRank>
-Eigen::Matrix<double, kRank, 1> functions_at(const ClusterBasis& basis, int slot, int level)
-{
-    using Functions = Eigen::Matrix<double, kRank, 1>;
-    using Transfer = Eigen::Map<const Eigen::Matrix<double, kRank, kRank, Eigen::RowMajor>>;
-    const int leaf = slot / ClusterTree::kLeaf;
-    Functions values = Eigen::Map<const Functions>(basis.leaves().data() + kRank * size_t(slot));
-    for (int k = 0; k < level; ++k) {
-        const int id = basis.tree().first_of_level(k) + (leaf >> k);
-        values = Transfer(basis.transfers().data() + kRank * kRank * size_t(id)).transpose() * values;
-    }
-    return values;
-}
 
 void insert_sorted(std::vector<int>& list, int value)
 {
@@ -63,7 +44,6 @@ private:
         Mat3 stiffness;
     };
 
-    void add_component(std::vector<int> vertices);
     void find_terms(const std::vector<FrozenTerm>& terms);
     void find_couplings(const HessianParts& K);
     bool add_couplings_of_terms();
@@ -83,17 +63,19 @@ private:
 template <Extent kExtent>
 void AffineSpaceOf<kExtent>::find_clusters(const HessianParts& K)
 {
-    cluster_of_.assign(points_.size(), -1);
     functions_.assign(points_.size(), Functions::Zero());
     order_.clear();
     first_of_cluster_.assign(1, 0);
-    std::vector<int> others;
-    for (std::vector<int>& component : connected_components(K.blocks, K.isotropic, K.fixed))
-        if (int(component.size()) >= ClusterTree::kLeaf)
-            add_component(std::move(component));
-        else
-            others.insert(others.end(), component.begin(), component.end());
-    order_.insert(order_.end(), others.begin(), others.end());
+    const ConnectedClusters clusters(points_, links_of(K.blocks, K.isotropic, K.fixed), K.fixed, kExtent);
+    cluster_of_ = clusters.groups.of;
+    for (const std::vector<int>& vertices : clusters.vertices()) {
+        const Eigen::MatrixXd functions = affine_functions(points_, vertices, kExtent);
+        for (size_t k = 0; k < vertices.size(); ++k)
+            functions_[vertices[k]] = functions.row(Eigen::Index(k));
+        order_.insert(order_.end(), vertices.begin(), vertices.end());
+        first_of_cluster_.push_back(int(order_.size()));
+    }
+    order_.insert(order_.end(), clusters.others.begin(), clusters.others.end());
     functions_of_row_.assign(order_.size(), Floats<4>(0.0F));
     for (size_t row = 0; row < order_.size(); ++row)
         for (int a = 0; a < kFunctions; ++a)
@@ -114,26 +96,6 @@ bool AffineSpaceOf<kExtent>::update(const HessianParts& K)
     parallel_for(
         kCpu, "newton/coarse_matrix", cluster_count(), [&](int c) { assemble(K, c); }, 1);
     return factor_.factor();
-}
-
-template <Extent kExtent>
-void AffineSpaceOf<kExtent>::add_component(std::vector<int> vertices)
-{
-    const ClusterTree tree(points_, std::move(vertices), kExtent);
-    const ClusterBasis basis(tree, points_);
-    const int level = std::min(kLevel, tree.level_count() - 1);
-    const int slots = ClusterTree::kLeaf << level;
-    for (int c = 0; c < tree.level_size(level); ++c) {
-        for (int slot = c * slots; slot < std::min((c + 1) * slots, tree.nodes().size()); ++slot) {
-            const int v = tree.nodes()[slot];
-            if (v < 0)
-                continue;
-            cluster_of_[v] = cluster_count();
-            functions_[v] = functions_at<kFunctions>(basis, slot, level);
-            order_.push_back(v);
-        }
-        first_of_cluster_.push_back(int(order_.size()));
-    }
 }
 
 template <Extent kExtent>

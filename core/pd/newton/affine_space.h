@@ -14,8 +14,7 @@ namespace toile {
 /// + d Z in a volume, with three unknowns a function and cluster, the Galerkin matrix K_c = p^T K p, and its
 /// sparse factor. It represents what a smoother of K cannot reach: motion and stretch of whole regions.
 ///
-/// Clusters and functions are those of the quadrature (ClusterTree, ClusterBasis), on the vertices that are
-/// free. A cluster lies in one connected component of K. Components of fewer vertices than a leaf have none.
+/// Clusters are ConnectedClusters of the vertices that are free.
 class AffineSpace {
 public:
     /// @param points  [vertices] undeformed positions

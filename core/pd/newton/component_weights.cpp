@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/pd/newton/components.h"
+#include "core/pd/newton/connected_groups.h"
 
 namespace toile {
 
@@ -12,7 +12,7 @@ ComponentWeights::ComponentWeights(View<const double> masses, const BlockMatrix&
     : masses_(masses.begin(), masses.end()), component_(masses.size()), weights_(masses.size())
 {
     const std::vector<unsigned char> none(masses.size(), 0);
-    for (const std::vector<int>& vertices : connected_components(blocks, isotropic, none)) {
+    for (const std::vector<int>& vertices : connected_components(links_of(blocks, isotropic, none), none)) {
         for (const int i : vertices)
             component_[i] = component_count_;
         ++component_count_;

@@ -1,31 +1,12 @@
 #include "core/quadrature/clusters/cluster_basis.h"
 
+#include "core/quadrature/clusters/orthonormalise.h"
+
 namespace toile {
 
 namespace {
 
 constexpr int kLeaf = ClusterTree::kLeaf;
-
-/// Relative length [-] below which a column after orthogonalisation is rounding error: fewer nodes than
-/// functions, or nodes on a line or in a plane.
-constexpr double kDependent = 1e-6;
-
-/// Modified Gram-Schmidt; dependent columns become zero.
-template <typename Matrix>
-void orthonormalise(Matrix& columns)
-{
-    for (int k = 0; k < columns.cols(); ++k) {
-        const double length = columns.col(k).norm();
-        for (int pass = 0; pass < 2; ++pass)
-            for (int j = 0; j < k; ++j)
-                columns.col(k) -= columns.col(j).dot(columns.col(k)) * columns.col(j);
-        const double rest = columns.col(k).norm();
-        if (rest > kDependent * length)
-            columns.col(k) /= rest;
-        else
-            columns.col(k).setZero();
-    }
-}
 
 /// Moments of 1 and of the six coordinates relative to a cluster's centre.
 template <int Rank>

@@ -57,7 +57,7 @@ ClusterTree::ClusterTree(View<const EmbeddedPoint> points, std::vector<int> node
     nodes_.resize(size_t(kLeaf) * leaf_count(), -1);
     for (int level = level_count() - 1; level >= 0; --level)
         for (int c = 0; c < level_size(level); ++c) {
-            measure(points, level, c);
+            clusters_[first_of_level_[level] + c] = measure(points, nodes_of(level, c), extent);
             if (level > 0)
                 split(points, level, c);
         }
@@ -99,10 +99,10 @@ void ClusterTree::split(View<const EmbeddedPoint> points, int level, int c)
     std::copy(best.begin(), best.end(), nodes_.begin() + (all.begin() - nodes_.data()));
 }
 
-void ClusterTree::measure(View<const EmbeddedPoint> points, int level, int c)
+ClusterTree::Cluster ClusterTree::measure(View<const EmbeddedPoint> points, View<const int> nodes,
+                                          Extent extent)
 {
-    Cluster& cluster = clusters_[first_of_level_[level] + c];
-    const View<const int> nodes = nodes_of(level, c);
+    Cluster cluster;
     cluster.center = mean_point(points, nodes);
     cluster.radius = std::sqrt(squared_radius(points, nodes));
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
@@ -112,9 +112,10 @@ void ClusterTree::measure(View<const EmbeddedPoint> points, int level, int c)
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(covariance);
     const double widest = std::sqrt(std::max(eigen.eigenvalues()[5], 0.0));
-    for (int k = 0; k < rank_of(extent_) - 1; ++k)
+    for (int k = 0; k < rank_of(extent) - 1; ++k)
         if (widest > 0.0 && std::sqrt(std::max(eigen.eigenvalues()[5 - k], 0.0)) > kFlat * widest)
             cluster.axes.col(k) = eigen.eigenvectors().col(5 - k);
+    return cluster;
 }
 
 } // namespace toile

@@ -59,6 +59,9 @@ public:
         return k < level_size(level - 1) ? first_of_level_[level - 1] + k : -1;
     }
 
+    /// @param nodes  at least one
+    static Cluster measure(View<const EmbeddedPoint> points, View<const int> nodes, Extent extent);
+
     const Cluster& cluster(int id) const { return clusters_[id]; }
 
     /// [kLeaf * leaf_count] node of every slot, -1 for padding of the last leaf.
@@ -67,7 +70,6 @@ public:
 private:
     View<const int> nodes_of(int level, int c) const;
     void split(View<const EmbeddedPoint> points, int level, int c);
-    void measure(View<const EmbeddedPoint> points, int level, int c);
 
     Extent extent_;
     std::vector<int> nodes_;

@@ -1,38 +1,72 @@
 #include "core/pd/cuda/newton/cluster_hierarchy.h"
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
+#include <numeric>
+#include <tuple>
 
-#include "core/pd/newton/components.h"
-#include "core/quadrature/clusters/cluster_basis.h"
+#include "core/pd/newton/connected_clusters.h"
+#include "core/quadrature/clusters/orthonormalise.h"
 
 namespace toile {
 
 namespace {
 
-/// Levels of a ClusterTree from leaves to clusters, and from these to parents of blocks.
-constexpr int kClusterLevel = 3, kBlockLevels = 4;
-static_assert(ClusterTree::kLeaf << kClusterLevel == ClusterHierarchy::kClusterSize);
+/// Levels of a ClusterTree from clusters to blocks.
+constexpr int kBlockLevels = 4;
 static_assert(1 << kBlockLevels == ClusterHierarchy::kBlockClusters);
 
-constexpr int kMaxFunctions = ClusterHierarchy::kMaxFunctions;
+/// Clusters of a component.
+struct Component {
+    Links links;
+    std::vector<int> numbers; ///< [clusters] in the level of the component's tree
+};
 
-/// Of as many rows and columns as a cluster has functions.
-using Matrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxFunctions, kMaxFunctions>;
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxFunctions, 1>;
-
-/// Functions of cluster c of a tree level as combinations of those of its ancestor `rise` levels above.
-Matrix transfer_of(const ClusterBasis& basis, int tree_level, int c, int rise)
+Component component_of_clusters(const Links& links, const Groups& clusters, int first, int end)
 {
-    using Stored = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
-    const int rank = basis.rank();
-    Matrix product = Matrix::Identity(rank, rank);
-    for (int k = 0; k < rise; ++k) {
-        const int id = basis.tree().first_of_level(tree_level + k) + (c >> k);
-        product = product * Stored(basis.transfers().data() + size_t(rank * rank) * size_t(id), rank, rank);
+    Component component;
+    for (int c = first; c < end; ++c) {
+        for (const int d : links.of(c))
+            component.links.to.push_back(d - first);
+        component.links.first.push_back(int(component.links.to.size()));
+        component.numbers.push_back(clusters.label[c]);
     }
-    return product;
+    return component;
+}
+
+/// Regions and blocks of a component, one of which consist of the other.
+struct Nested {
+    std::vector<int> region, block; ///< [clusters]
+    int region_count;
+    std::vector<int> order; ///< clusters, those of a region and of a block one after the other
+};
+
+/// @param rise  levels of the tree from clusters to regions
+Nested nested_groups(const Component& component, int rise)
+{
+    const int fine = std::min(rise, kBlockLevels), coarse = std::max(rise, kBlockLevels);
+    const auto groups = [](const Links& links, std::vector<int> numbers, const std::vector<int>& weights,
+                           int levels, int to) {
+        for (int& number : numbers)
+            number >>= levels;
+        const int clusters = 1 << to,
+                  largest = to > kBlockLevels ? 2 * clusters : ClusterHierarchy::kBlockClusters;
+        return connected_groups(links, numbers, weights, clusters / 4, largest);
+    };
+    const std::vector<int> ones(component.numbers.size(), 1);
+    const Groups finer = groups(component.links, component.numbers, ones, fine, fine);
+    const Groups coarser = groups(links_between(component.links, finer), finer.label, sums_of(finer, ones),
+                                  coarse - fine, coarse);
+    std::vector<int> coarser_of, order(ones.size());
+    for (const int group : finer.of)
+        coarser_of.push_back(coarser.of[group]);
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+        return std::tie(coarser_of[a], finer.of[a], a) < std::tie(coarser_of[b], finer.of[b], b);
+    });
+    if (rise <= kBlockLevels)
+        return {finer.of, coarser_of, finer.count(), order};
+    return {coarser_of, finer.of, coarser.count(), order};
 }
 
 } // namespace
@@ -41,64 +75,100 @@ ClusterHierarchy::ClusterHierarchy(View<const EmbeddedPoint> points, const Block
                                    const SparseMatrix& isotropic, Extent extent)
     : extent_(extent), cluster_of_(points.size(), -1), functions_(points.size(), PaddedVec3(0.0F))
 {
-    std::vector<int> others;
     const std::vector<unsigned char> none(points.size(), 0);
-    for (std::vector<int>& component : connected_components(blocks, isotropic, none))
-        if (int(component.size()) >= ClusterTree::kLeaf)
-            add_component(points, std::move(component));
-        else
-            others.insert(others.end(), component.begin(), component.end());
-    add_others(others);
+    const Links links = links_of(blocks, isotropic, none);
+    const ConnectedClusters clusters(points, links, none, extent);
+    const Links between = links_between(links, clusters.groups);
+    const std::vector<std::vector<int>> vertices = clusters.vertices();
+    const std::vector<int>& first = clusters.first_of_component;
+    const auto has_regions = [&](size_t k) { return first[k + 1] - first[k] > kBlockClusters; };
+    int components = 0;
+    for (size_t k = 0; k + 1 < first.size(); ++k)
+        components += has_regions(k);
+    for (size_t k = 0; k + 1 < first.size(); ++k) {
+        const View<const std::vector<int>> own(vertices.data() + first[k], first[k + 1] - first[k]);
+        if (has_regions(k)) {
+            const Component component =
+                component_of_clusters(between, clusters.groups, first[k], first[k + 1]);
+            int rise = 1;
+            Nested nested = nested_groups(component, rise);
+            while (nested.region_count * unknown_count() > max_unknowns(components))
+                nested = nested_groups(component, ++rise);
+            add_component(points, own, nested.order, nested.region, nested.block);
+        } else {
+            for (const std::vector<int>& cluster : own)
+                add_cluster(points, cluster);
+            first_of_block_.push_back(cluster_count());
+        }
+    }
+    component_of_.resize(region_count());
+    for (int k = 0; k < component_count(); ++k)
+        std::fill(component_of_.begin() + first_region_[k], component_of_.begin() + first_region_[k + 1], k);
+    add_others(clusters.others);
+    block_of_.assign(cluster_count(), -1);
+    for (int b = 0; b < block_count(); ++b)
+        std::fill(block_of_.begin() + first_of_block_[b], block_of_.begin() + first_of_block_[b + 1], b);
+    region_of_.assign(cluster_count(), -1);
+    transfers_.resize(cluster_count());
+    for (int r = 0; r < region_count(); ++r)
+        find_transfers(points, r);
     find_neighbours(blocks, isotropic);
 }
 
-void ClusterHierarchy::add_component(View<const EmbeddedPoint> points, std::vector<int> vertices)
+int ClusterHierarchy::max_unknowns(int components)
 {
-    const ClusterTree tree(points, std::move(vertices), extent_);
-    const ClusterBasis basis(tree, points);
-    const int level = std::min(kClusterLevel, tree.level_count() - 1);
-    const int first_cluster = cluster_count(), count = tree.level_size(level);
-    const int slots = ClusterTree::kLeaf << level;
-    for (int c = 0; c < count; ++c) {
-        for (int slot = c * slots; slot < std::min((c + 1) * slots, tree.nodes().size()); ++slot) {
-            const int v = tree.nodes()[slot];
-            if (v < 0)
-                continue;
-            const Eigen::Map<const Eigen::VectorXd> of_leaf(
-                basis.leaves().data() + size_t(function_count()) * size_t(slot), function_count());
-            const Vector values =
-                transfer_of(basis, 0, slot / ClusterTree::kLeaf, level).transpose() * of_leaf;
-            for (int a = 0; a < function_count(); ++a)
-                functions_[v].value[a] = float(values[a]);
-            cluster_of_[v] = cluster_count();
-            vertices_.push_back(v);
-        }
-        first_vertex_.push_back(int(vertices_.size()));
-        block_of_.push_back(block_count() + c / kBlockClusters);
-    }
-    for (int c = 0; c < count; c += kBlockClusters)
-        first_of_block_.push_back(first_cluster + std::min(c + kBlockClusters, count));
-    region_of_.resize(cluster_count(), -1);
-    transfers_.resize(cluster_count());
-    if (count <= kBlockClusters)
-        return;
+    return std::max(kLeastUnknowns, int(kMaxUnknowns / std::cbrt(double(components))));
+}
 
-    int rise = 1;
-    while (tree.level_size(level + rise) * unknown_count() > kMaxUnknowns)
-        ++rise;
-    for (int c = 0; c < count; ++c) {
-        const int cluster = first_cluster + c;
-        if (c % (1 << rise) == 0)
-            clusters_of_region_.push_back({cluster, cluster});
-        ++clusters_of_region_.back().end;
-        region_of_[cluster] = region_count() - 1;
-        const Matrix transfer = transfer_of(basis, level, c, rise);
+void ClusterHierarchy::add_cluster(View<const EmbeddedPoint> points, const std::vector<int>& vertices)
+{
+    const Eigen::MatrixXd functions = affine_functions(points, vertices, extent_);
+    for (size_t k = 0; k < vertices.size(); ++k) {
         for (int a = 0; a < function_count(); ++a)
-            for (int b = 0; b < function_count(); ++b)
-                transfers_[cluster].entry[a][b] = float(transfer(a, b));
+            functions_[vertices[k]].value[a] = float(functions(Eigen::Index(k), a));
+        cluster_of_[vertices[k]] = cluster_count();
     }
-    component_of_.resize(region_count(), component_count());
+    vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
+    first_vertex_.push_back(int(vertices_.size()));
+}
+
+void ClusterHierarchy::add_component(View<const EmbeddedPoint> points, View<const std::vector<int>> clusters,
+                                     const std::vector<int>& order, const std::vector<int>& region,
+                                     const std::vector<int>& block)
+{
+    int before = -1;
+    for (const int c : order) {
+        if (before >= 0 && block[c] != block[before])
+            first_of_block_.push_back(cluster_count());
+        if (before < 0 || region[c] != region[before])
+            clusters_of_region_.push_back({cluster_count(), cluster_count()});
+        add_cluster(points, clusters[c]);
+        ++clusters_of_region_.back().end;
+        before = c;
+    }
+    first_of_block_.push_back(cluster_count());
     first_region_.push_back(region_count());
+}
+
+void ClusterHierarchy::find_transfers(View<const EmbeddedPoint> points, int region)
+{
+    const Range range = clusters_of_region_[region];
+    const int first = first_vertex_[range.first], rank = function_count();
+    const View<const int> vertices(vertices_.data() + first, first_vertex_[range.end] - first);
+    const Eigen::MatrixXd of_region = affine_functions(points, vertices, extent_);
+    Eigen::MatrixXd transfers = Eigen::MatrixXd::Zero(rank * (range.end - range.first), rank);
+    for (int k = 0; k < vertices.size(); ++k) {
+        const int c = cluster_of_[vertices[k]] - range.first;
+        for (int a = 0; a < rank; ++a)
+            transfers.row(rank * c + a) += double(functions_[vertices[k]].value[a]) * of_region.row(k);
+    }
+    orthonormalise(transfers);
+    for (int c = range.first; c < range.end; ++c) {
+        region_of_[c] = region;
+        for (int a = 0; a < rank; ++a)
+            for (int b = 0; b < rank; ++b)
+                transfers_[c].entry[a][b] = float(transfers(rank * (c - range.first) + a, b));
+    }
 }
 
 void ClusterHierarchy::add_others(const std::vector<int>& vertices)
@@ -111,9 +181,6 @@ void ClusterHierarchy::add_others(const std::vector<int>& vertices)
         }
         first_vertex_.push_back(int(vertices_.size()));
     }
-    block_of_.resize(cluster_count(), -1);
-    region_of_.resize(cluster_count(), -1);
-    transfers_.resize(cluster_count());
 }
 
 void ClusterHierarchy::find_neighbours(const BlockMatrix& blocks, const SparseMatrix& isotropic)

@@ -5,29 +5,32 @@
 #include "core/compute/lanes.h"
 #include "core/linear/block_matrix.h"
 #include "core/linear/sparse_matrix.h"
-#include "core/quadrature/clusters/cluster_tree.h"
+#include "core/pd/newton/connected_clusters.h"
 
 namespace toile {
 
 /// Clusters of vertices, nested regions of clusters, and on each of both three or four functions, close to 1
 /// and the coordinates along the axes of its extent: the coarse spaces of an additive preconditioner.
-/// Functions and clusters are those of ClusterTree and ClusterBasis.
-///
-/// A cluster has up to 64 vertices of one connected component of a matrix. Up to 16 of them with one parent
-/// form a *block*. A component of several blocks also has *regions*: clusters of 128, 256 or more vertices,
-/// as small as is possible with up to 768 unknowns, three a function. A solver inverts the couplings within a
+/// Clusters are ConnectedClusters of a matrix. Up to 16 of them, connected and near each other, form a
+/// *block*. A component of more clusters also has *regions*: connected sets of two, four or more clusters, as
+/// small as is possible with up to max_unknowns(), three a function. A solver inverts the couplings within a
 /// block, and those between all regions of a component.
 class ClusterHierarchy {
 public:
-    static constexpr int kClusterSize = 64;   ///< vertices
-    static constexpr int kBlockClusters = 16; ///< clusters of a block
-    static constexpr int kMaxUnknowns = 768;  ///< of the regions of a component
+    static constexpr int kClusterSize = ConnectedClusters::kSize;
+    static constexpr int kBlockClusters = 16;                       ///< clusters of a block
+    static constexpr int kMaxUnknowns = 2304, kLeastUnknowns = 768; ///< see max_unknowns()
     static constexpr int kMaxFunctions = 4;
 
     /// Functions of a cluster as combinations of those of its region.
     struct Transfer {
         float entry[kMaxFunctions][kMaxFunctions] = {};
     };
+
+    /// Most unknowns of the regions of a component: kMaxUnknowns if it is alone. Of several components all
+    /// inverses together take as long as one of that size, down to kLeastUnknowns.
+    /// @param components  with regions, at least 1
+    static int max_unknowns(int components);
 
     /// @param points  [vertices] undeformed positions
     /// @param blocks, isotropic  patterns that connect vertices, symmetric
@@ -69,7 +72,11 @@ public:
     const std::vector<Range>& clusters_of_region() const { return clusters_of_region_; }
 
 private:
-    void add_component(View<const EmbeddedPoint> points, std::vector<int> vertices);
+    void add_cluster(View<const EmbeddedPoint> points, const std::vector<int>& vertices);
+    void add_component(View<const EmbeddedPoint> points, View<const std::vector<int>> clusters,
+                       const std::vector<int>& order, const std::vector<int>& region,
+                       const std::vector<int>& block);
+    void find_transfers(View<const EmbeddedPoint> points, int region);
     void add_others(const std::vector<int>& vertices);
     void find_neighbours(const BlockMatrix& blocks, const SparseMatrix& isotropic);
 
