@@ -34,12 +34,13 @@ ConnectedClusters::ConnectedClusters(View<const EmbeddedPoint> points, const Lin
         first_label.push_back(first_label.back() + tree.level_size(level));
     }
     groups = connected_groups(links, labels, std::vector<int>(points.size(), 1), kSmallest, kSize);
-    for (size_t k = 0; k + 1 < first_label.size(); ++k) {
-        const auto end = std::lower_bound(groups.label.begin(), groups.label.end(), first_label[k + 1]);
+    for (size_t k = 1; k < first_label.size(); ++k) {
+        const auto end = std::lower_bound(groups.label.begin(), groups.label.end(), first_label[k]);
         first_of_component.push_back(int(end - groups.label.begin()));
-        for (auto label = groups.label.begin() + first_of_component[k]; label != end; ++label)
-            *label -= first_label[k];
     }
+    for (size_t k = 0; k + 1 < first_label.size(); ++k)
+        for (int c = first_of_component[k]; c < first_of_component[k + 1]; ++c)
+            groups.label[c] -= first_label[k];
 }
 
 std::vector<std::vector<int>> ConnectedClusters::vertices() const

@@ -8,7 +8,7 @@ namespace toile {
 
 namespace {
 
-/// Items that links reach from `start` through items that `admits` admits, which it is asked once each.
+/// Items that links reach from `start` through items that `admits` admits: each at most once.
 template <typename Admits>
 std::vector<int> reached(const Links& links, int start, const Admits& admits)
 {
@@ -28,9 +28,9 @@ struct Growing {
     int weight;
 };
 
-/// Connected items of one label.
+/// Connected items of one label, in several pieces where they are too heavy for one.
 std::vector<Growing> pieces_of(const Links& links, View<const int> labels, View<const int> weights,
-                               std::vector<int>& piece_of)
+                               int largest, std::vector<int>& piece_of)
 {
     std::vector<Growing> pieces;
     for (int start = 0; start < links.count(); ++start) {
@@ -38,15 +38,14 @@ std::vector<Growing> pieces_of(const Links& links, View<const int> labels, View<
             continue;
         const int piece = int(pieces.size());
         piece_of[start] = piece;
+        int weight = weights[start];
         std::vector<int> items = reached(links, start, [&](int j) {
-            const bool is_new = labels[j] == labels[start] && piece_of[j] < 0;
-            if (is_new)
-                piece_of[j] = piece;
-            return is_new;
+            if (labels[j] != labels[start] || piece_of[j] >= 0 || weight + weights[j] > largest)
+                return false;
+            piece_of[j] = piece;
+            weight += weights[j];
+            return true;
         });
-        int weight = 0;
-        for (const int i : items)
-            weight += weights[i];
         pieces.push_back({labels[start], std::move(items), weight});
     }
     return pieces;
@@ -111,7 +110,7 @@ Groups connected_groups(const Links& links, View<const int> labels, View<const i
                         int largest)
 {
     std::vector<int> group_of(links.count(), -1);
-    std::vector<Growing> groups = pieces_of(links, labels, weights, group_of);
+    std::vector<Growing> groups = pieces_of(links, labels, weights, largest, group_of);
 
     std::vector<int> order(groups.size());
     std::iota(order.begin(), order.end(), 0);

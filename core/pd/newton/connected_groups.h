@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/compute/types.h"
 #include "core/linear/block_matrix.h"
 #include "core/linear/sparse_matrix.h"
 
@@ -10,7 +11,7 @@ namespace toile {
 /// Links between items, both ways. Repeats count: they are how strongly two items are linked.
 struct Links {
     std::vector<int> first{0}; ///< [items + 1]
-    std::vector<int> to;
+    std::vector<int> to;       ///< [links] the other item
 
     int count() const { return int(first.size()) - 1; }
     View<const int> of(int item) const { return {to.data() + first[item], first[item + 1] - first[item]}; }
@@ -32,12 +33,12 @@ struct Groups {
     int count() const { return int(label.size()); }
 };
 
-/// Groups of linked items of one label. Small groups join one that they are linked to, the one with most
-/// links, whatever its label: groups are connected.
+/// Groups of linked items of one label. Small groups join one that they are linked to, whatever its label:
+/// the one with most links, the first of several. So groups are connected, and several may have one label.
 /// @param labels    [items] -1: belongs to no group
 /// @param weights   [items]
-/// @param smallest  weight below which a group joins another
-/// @param largest   weight up to which groups are joined; those of one label may be heavier
+/// @param smallest  weight below which a group joins another, if one has room
+/// @param largest   weight of a group of more than one item
 Groups connected_groups(const Links& links, View<const int> labels, View<const int> weights, int smallest,
                         int largest);
 

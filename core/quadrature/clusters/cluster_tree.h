@@ -59,6 +59,7 @@ public:
         return k < level_size(level - 1) ? first_of_level_[level - 1] + k : -1;
     }
 
+    /// Centre, radius and axes of some nodes.
     /// @param nodes  at least one
     static Cluster measure(View<const EmbeddedPoint> points, View<const int> nodes, Extent extent);
 

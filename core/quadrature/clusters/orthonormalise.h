@@ -2,11 +2,14 @@
 
 namespace toile {
 
-/// Modified Gram-Schmidt. Columns that depend on others become zero: those of which less than 1e-6 is left.
+/// Relative length [-] below which a column after orthogonalisation is rounding error: fewer nodes than
+/// functions, or nodes on a line or in a plane.
+inline constexpr double kDependent = 1e-6;
+
+/// Modified Gram-Schmidt; dependent columns become zero. The second pass takes what rounding left.
 template <typename Matrix>
 void orthonormalise(Matrix& columns)
 {
-    constexpr double kDependent = 1e-6;
     for (int k = 0; k < columns.cols(); ++k) {
         const double length = columns.col(k).norm();
         for (int pass = 0; pass < 2; ++pass)

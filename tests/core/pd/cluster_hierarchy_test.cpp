@@ -32,6 +32,24 @@ struct Grids {
                     couplings.emplace_back(v - width, v);
             }
     }
+    /// A strip of four vertices across whose rows go to and fro, 1 mm apart where it turns.
+    void add_folded_strip(int rows)
+    {
+        constexpr int kAcross = 4, kRowsOfFold = 500;
+        for (int row = 0; row < rows; ++row)
+            for (int k = 0; k < kAcross; ++k) {
+                const int fold = row / kRowsOfFold, along = row % kRowsOfFold;
+                EmbeddedPoint p = EmbeddedPoint::Zero();
+                p.head<3>() =
+                    Vec3(0.01 * (fold % 2 == 0 ? along : kRowsOfFold - 1 - along), 0.01 * k, 0.001 * fold);
+                points.push_back(p);
+                const int v = int(points.size()) - 1;
+                if (k > 0)
+                    couplings.emplace_back(v - 1, v);
+                if (row > 0)
+                    couplings.emplace_back(v - kAcross, v);
+            }
+    }
     BlockMatrix blocks() const { return {int(points.size()), couplings}; }
     SparseMatrix none() const { return SparseMatrix(int(points.size()), int(points.size())); }
     ClusterHierarchy hierarchy(Extent extent = Extent::Surface) const
@@ -68,10 +86,10 @@ TEST(ClusterHierarchy, HasEveryVertexOnceInClustersOfOneComponent)
             EXPECT_EQ(hierarchy.cluster_of()[hierarchy.vertices()[k]], c);
     }
     EXPECT_EQ(hierarchy.cluster_count(), 47 + 1 + 300 + 1); // the last holds the small components
-    EXPECT_EQ(hierarchy.block_count(), 3 + 1 + 19);
+    EXPECT_EQ(hierarchy.block_count(), 3 + 1 + 20);         // regions of 17 clusters make two blocks
     EXPECT_EQ(hierarchy.block_of().back(), -1);
     EXPECT_EQ(hierarchy.component_count(), 2);
-    EXPECT_EQ(hierarchy.region_count(), 24 + 150);
+    EXPECT_EQ(hierarchy.region_count(), 23 + 150); // the last cluster of 47 joins a region
 }
 
 TEST(ClusterHierarchy, HasBlocksAndRegionsOfClustersOfOneComponent)
@@ -101,6 +119,42 @@ TEST(ClusterHierarchy, HasBlocksAndRegionsOfClustersOfOneComponent)
             EXPECT_TRUE(std::binary_search(begin + hierarchy.first_neighbour()[d],
                                            begin + hierarchy.first_neighbour()[d + 1], c));
         }
+}
+
+/// A body whose regions consist of several blocks, with folds near each other, beside many small ones.
+TEST(ClusterHierarchy, HasConnectedBlocksAndRegionsWhereABodyIsFolded)
+{
+    Grids grids;
+    grids.add_folded_strip(20'000);
+    for (int k = 0; k < 27; ++k)
+        grids.add(33, 33);
+    const ClusterHierarchy hierarchy = grids.hierarchy(Extent::Volume);
+    const std::vector<unsigned char> none(grids.points.size(), 0);
+    const Links links = links_of(grids.blocks(), grids.none(), none);
+    const auto expect_connected = [&](int first_cluster, int end_cluster) {
+        std::vector<unsigned char> excluded(grids.points.size(), 1);
+        for (int k = hierarchy.first_vertex()[first_cluster]; k < hierarchy.first_vertex()[end_cluster]; ++k)
+            excluded[hierarchy.vertices()[k]] = 0;
+        EXPECT_EQ(connected_components(links, excluded).size(), 1U);
+    };
+    ASSERT_EQ(hierarchy.component_count(), 28);
+    EXPECT_EQ(ClusterHierarchy::max_unknowns(28), ClusterHierarchy::kMaxUnknownsOfMany);
+    for (int k = 0; k < hierarchy.component_count(); ++k)
+        EXPECT_LE(hierarchy.unknown_count() * (hierarchy.first_region()[k + 1] - hierarchy.first_region()[k]),
+                  ClusterHierarchy::kMaxUnknownsOfMany);
+    const std::vector<int>& first_of_block = hierarchy.first_of_block();
+    for (int b = 0;
+         b < hierarchy.block_count() && first_of_block[b] < hierarchy.clusters_of_region()[70].first; ++b) {
+        EXPECT_LE(first_of_block[b + 1] - first_of_block[b], ClusterHierarchy::kBlockClusters);
+        expect_connected(first_of_block[b], first_of_block[b + 1]);
+    }
+    for (int r = 0; r < 70; ++r) {
+        const ClusterHierarchy::Range range = hierarchy.clusters_of_region()[r];
+        expect_connected(range.first, range.end);
+        for (const int c : {range.first, range.end})
+            EXPECT_TRUE(std::binary_search(first_of_block.begin(), first_of_block.end(), c) ||
+                        r >= hierarchy.first_region()[1]);
+    }
 }
 
 TEST(ClusterHierarchy, KnowsTheClustersThatEntriesCouple)

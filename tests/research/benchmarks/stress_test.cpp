@@ -23,8 +23,7 @@ const std::set<std::string> kGainEnergy{
 constexpr double kCreep = 0.6;
 
 /// Cases with a separate bound [m/s]. Cloth of 1 N/m still swings like a rubber band after those five
-/// seconds, and cloth that a ball has taken along slides off it,
-/// or has no friction to stay on it.
+/// seconds, and cloth that a ball has taken along, or that has no friction, slides off it.
 const std::set<std::string> kUnfold{"stiffness 1",
                                     "dt 1/1000 stiffness 1 density 0.01",
                                     "dt 1/1000 stiffness 1 density 1",

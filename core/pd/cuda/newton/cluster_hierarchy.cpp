@@ -5,7 +5,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/pd/newton/connected_clusters.h"
 #include "core/quadrature/clusters/orthonormalise.h"
 
 namespace toile {
@@ -45,13 +44,14 @@ struct Nested {
 Nested nested_groups(const Component& component, int rise)
 {
     const int fine = std::min(rise, kBlockLevels), coarse = std::max(rise, kBlockLevels);
+    // A block has a bound; regions of more clusters than a block may grow, so that none stays small.
     const auto groups = [](const Links& links, std::vector<int> numbers, const std::vector<int>& weights,
                            int levels, int to) {
         for (int& number : numbers)
             number >>= levels;
-        const int clusters = 1 << to,
-                  largest = to > kBlockLevels ? 2 * clusters : ClusterHierarchy::kBlockClusters;
-        return connected_groups(links, numbers, weights, clusters / 4, largest);
+        const int clusters = 1 << to, smallest = std::max(2, clusters / 4);
+        const int largest = to <= kBlockLevels ? ClusterHierarchy::kBlockClusters : 2 * clusters;
+        return connected_groups(links, numbers, weights, smallest, largest);
     };
     const std::vector<int> ones(component.numbers.size(), 1);
     const Groups finer = groups(component.links, component.numbers, ones, fine, fine);
@@ -67,6 +67,16 @@ Nested nested_groups(const Component& component, int rise)
     if (rise <= kBlockLevels)
         return {finer.of, coarser_of, finer.count(), order};
     return {coarser_of, finer.of, coarser.count(), order};
+}
+
+/// Those with as many regions as is possible.
+Nested finest_groups(const Component& component, int max_regions)
+{
+    int rise = 1;
+    Nested nested = nested_groups(component, rise);
+    while (nested.region_count > max_regions)
+        nested = nested_groups(component, ++rise);
+    return nested;
 }
 
 } // namespace
@@ -90,10 +100,7 @@ ClusterHierarchy::ClusterHierarchy(View<const EmbeddedPoint> points, const Block
         if (has_regions(k)) {
             const Component component =
                 component_of_clusters(between, clusters.groups, first[k], first[k + 1]);
-            int rise = 1;
-            Nested nested = nested_groups(component, rise);
-            while (nested.region_count * unknown_count() > max_unknowns(components))
-                nested = nested_groups(component, ++rise);
+            const Nested nested = finest_groups(component, max_unknowns(components) / unknown_count());
             add_component(points, own, nested.order, nested.region, nested.block);
         } else {
             for (const std::vector<int>& cluster : own)
@@ -117,7 +124,7 @@ ClusterHierarchy::ClusterHierarchy(View<const EmbeddedPoint> points, const Block
 
 int ClusterHierarchy::max_unknowns(int components)
 {
-    return std::max(kLeastUnknowns, int(kMaxUnknowns / std::cbrt(double(components))));
+    return std::max(kMaxUnknownsOfMany, int(kMaxUnknowns / std::cbrt(double(components))));
 }
 
 void ClusterHierarchy::add_cluster(View<const EmbeddedPoint> points, const std::vector<int>& vertices)

@@ -18,8 +18,9 @@ namespace toile {
 class ClusterHierarchy {
 public:
     static constexpr int kClusterSize = ConnectedClusters::kSize;
-    static constexpr int kBlockClusters = 16;                       ///< clusters of a block
-    static constexpr int kMaxUnknowns = 2304, kLeastUnknowns = 768; ///< see max_unknowns()
+    static constexpr int kBlockClusters = 16; ///< clusters of a block
+    static constexpr int kMaxUnknowns = 2304; ///< see max_unknowns()
+    static constexpr int kMaxUnknownsOfMany = 768;
     static constexpr int kMaxFunctions = 4;
 
     /// Functions of a cluster as combinations of those of its region.
@@ -27,8 +28,8 @@ public:
         float entry[kMaxFunctions][kMaxFunctions] = {};
     };
 
-    /// Most unknowns of the regions of a component: kMaxUnknowns if it is alone. Of several components all
-    /// inverses together take as long as one of that size, down to kLeastUnknowns.
+    /// Most unknowns of the regions of a component: kMaxUnknowns / cbrt(components), since inverting costs
+    /// the cube, and at least kMaxUnknownsOfMany.
     /// @param components  with regions, at least 1
     static int max_unknowns(int components);
 
