@@ -230,8 +230,8 @@ TEST(ClusterHierarchy, RepresentsAffineFieldsOfAVolume)
 {
     Grids grids;
     grids.add(200, 150);
-    for (int v = 0; v < int(grids.points.size()); ++v)
-        grids.points[v][2] = 0.2 * std::sin(0.1 * (v % 200)) * std::cos(0.1 * (v / 200));
+    for (EmbeddedPoint& p : grids.points)
+        p[2] = 0.2 * std::sin(10.0 * p[0]) * std::cos(10.0 * p[1]);
     expect_affine_fields(grids, Extent::Volume, 256); // 235 regions of 128 would be too many
 }
 

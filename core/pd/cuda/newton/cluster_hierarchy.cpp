@@ -103,15 +103,17 @@ ClusterHierarchy::ClusterHierarchy(View<const EmbeddedPoint> points, const Block
             const Nested nested = finest_groups(component, max_unknowns(components) / unknown_count());
             add_component(points, own, nested.order, nested.region, nested.block);
         } else {
-            for (const std::vector<int>& cluster : own)
+            for (const std::vector<int>& cluster : own) // one block
                 add_cluster(points, cluster);
             first_of_block_.push_back(cluster_count());
         }
     }
+    add_others(clusters.others);
+
+    // From ranges to the number of each of their items.
     component_of_.resize(region_count());
     for (int k = 0; k < component_count(); ++k)
         std::fill(component_of_.begin() + first_region_[k], component_of_.begin() + first_region_[k + 1], k);
-    add_others(clusters.others);
     block_of_.assign(cluster_count(), -1);
     for (int b = 0; b < block_count(); ++b)
         std::fill(block_of_.begin() + first_of_block_[b], block_of_.begin() + first_of_block_[b + 1], b);
