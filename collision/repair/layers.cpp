@@ -48,7 +48,19 @@ std::set<int> misplaced_layers(const JoinedCloths& cloths, const std::vector<Con
     return layers;
 }
 
-/// [pieces] Nonzero if the winding of the triangles faces the bodies.
+/// [pieces] Volume that a closed piece encloses, negative inside out [m^3]; 0 for one with a border.
+std::vector<double> enclosed_volumes(const JoinedCloths& cloths, View<const Vec3> x)
+{
+    std::vector<double> volume(cloths.piece_count(), 0.0);
+    for (const Triangle& t : cloths.triangles)
+        volume[cloths.piece[t[0]]] += x[t[0]].dot(x[t[1]].cross(x[t[2]])) / 6.0;
+    for (int e = 0; e < cloths.edges.edge_count(); ++e)
+        if (cloths.edges.triangles.of(e).size() == 1)
+            volume[cloths.piece[cloths.edges.vertex[e][0]]] = 0.0;
+    return volume;
+}
+
+/// [pieces] Nonzero if the winding of the triangles faces the bodies, or the inside of a closed piece.
 std::vector<char> pieces_inside_out(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies,
                                     View<const Vec3> x)
 {
@@ -62,9 +74,11 @@ std::vector<char> pieces_inside_out(const JoinedCloths& cloths, const std::vecto
     });
     for (size_t t = 0; t < of_triangle.size(); ++t)
         agreement[cloths.piece[cloths.triangles[t][0]]] += of_triangle[t];
+    const std::vector<double> volume = enclosed_volumes(cloths, x);
     std::vector<char> inside_out(agreement.size());
-    std::transform(agreement.begin(), agreement.end(), inside_out.begin(),
-                   [](double sum) { return char(sum < 0.0); });
+    std::transform(
+        agreement.begin(), agreement.end(), volume.begin(), inside_out.begin(),
+        [](double sum, double enclosed) { return char((enclosed != 0.0 ? enclosed : sum) < 0.0); });
     return inside_out;
 }
 

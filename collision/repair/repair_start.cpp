@@ -182,6 +182,8 @@ StartReport check_start(const std::vector<StartCloth>& cloths, const std::vector
 {
     const JoinedCloths joined(cloths);
     StartReport report;
+    report.edge_count = joined.edges.edge_count();
+    report.changes.resize(cloths.size());
     for (const auto& [key, defect] :
          Faults(joined, bodies, BodyClearing(joined, bodies), joined.start).defects)
         report.defects.push_back(defect);
@@ -224,6 +226,7 @@ StartReport repair_start(std::vector<StartCloth>& cloths, const std::vector<Cont
     const EdgeStrain strain = edge_strain(joined, best_x);
     report.max_strain = strain.max;
     report.rms_strain = strain.rms;
+    report.edge_count = joined.edges.edge_count();
     for (const StartReport::Change& change : report.changes)
         report.max_move = std::max(report.max_move, change.max_move);
     for (size_t c = 0; c < cloths.size(); ++c)

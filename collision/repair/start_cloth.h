@@ -6,7 +6,7 @@
 
 namespace toile::collision {
 
-/// One cloth of a start pose.
+/// One cloth, or surface of a soft body, of a start pose.
 struct StartCloth {
     std::vector<Triangle> triangles; ///< [triangles]
     std::vector<Vec3> positions;     ///< [vertices] [m]

@@ -1,8 +1,23 @@
 #include "collision/repair/start_report.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace toile::collision {
+
+void StartReport::append(const StartReport& other)
+{
+    defects.insert(defects.end(), other.defects.begin(), other.defects.end());
+    changes.insert(changes.end(), other.changes.begin(), other.changes.end());
+    was_repaired = was_repaired || other.was_repaired;
+    passes = std::max(passes, other.passes);
+    max_strain = std::max(max_strain, other.max_strain);
+    max_move = std::max(max_move, other.max_move);
+    const double squares =
+        edge_count * rms_strain * rms_strain + other.edge_count * other.rms_strain * other.rms_strain;
+    edge_count += other.edge_count;
+    rms_strain = edge_count > 0 ? std::sqrt(squares / edge_count) : 0.0;
+}
 
 int StartReport::count(StartDefect::Kind kind) const
 {

@@ -26,15 +26,18 @@ struct StartDefect {
     std::array<int, 3> vertex{-1, -1, -1};
     bool is_fixed = false;    ///< every vertex of the defect is fixed by the user, so it stays
     bool is_repaired = false; ///< gone after the repair
+
+    bool is_with_body() const { return kind == Kind::InsideBody || kind == Kind::CrossesBody; }
 };
 
 /// Defects of a start pose before and after a repair.
 struct StartReport {
     std::vector<StartDefect> defects; ///< by kind and cloth; then new ones that remain
-    bool was_repaired = false;        ///< a repair ran; otherwise nothing below is set
+    bool was_repaired = false;        ///< a repair ran; otherwise nothing has moved
     int passes = 0;                   ///< passes of growing bodies and untangling
     double max_strain = 0.0;          ///< [-] largest |length / start length - 1| of an edge after it
     double rms_strain = 0.0;          ///< [-] of all edges
+    int edge_count = 0;               ///< of all edges
     double max_move = 0.0;            ///< [m] of a vertex
 
     /// What the repair did to one cloth.
@@ -44,6 +47,9 @@ struct StartReport {
         double strain_p99 = 0.0; ///< [-] not exceeded by 99 % of its edges
     };
     std::vector<Change> changes; ///< [cloths]
+
+    /// Adds the report of other cloths of the pose.
+    void append(const StartReport& other);
 
     /// Number of defects of a kind: all, or those that remain. A pose that was not repaired keeps all.
     int count(StartDefect::Kind kind) const;

@@ -367,6 +367,9 @@ void describe(V& v, SoftBody& s)
     v.field("friction", s.friction, between(0.0, 10.0),
             "Coulomb coefficient if no friction pair applies; two solids use the smaller one. Absent: "
             "contact.friction, or the avatar's.");
+    v.field("layer", s.layer, between(-100, 100),
+            "Order of soft bodies: where they cross at the start, the repair moves the one with the higher "
+            "layer out of the other. Cloth is outside of all soft bodies.");
     v.field("color", s.color, kColor, "Red, green, blue in pictures.");
 }
 

@@ -310,6 +310,7 @@ struct SoftBody {
     double damping = 0.0;              ///< [1/s] as Fabric::damping
     Vec3 velocity = Vec3::Zero();      ///< [m/s] at the start
     std::optional<double> friction;    ///< [-] as Solid::friction
+    int layer = 0;                     ///< higher is further outside if soft bodies cross at the start
     Vec3 color = Vec3(0.8, 0.55, 0.5); ///< [-] sRGB
 
     /// Name of its surface for pictures and caches.

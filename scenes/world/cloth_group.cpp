@@ -244,10 +244,19 @@ bool ClothGroup::is_strained() const
 StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>& colliders)
 {
     TOILE_ASSERT(!solids_);
+    constexpr double kAtRest = 1e-4; // [m] moved in a step
+    const std::vector<Vec3> velocities(body_->velocities().begin(), body_->velocities().end());
+    const std::vector<Vec3> start = is_deformed_ ? surfaces() : std::vector<Vec3>();
+    body_->set_velocities(std::vector<Vec3>(velocities.size(), Vec3::Zero()));
     is_relaxing_ = true;
     StepReport report = step(dt, t_t1, colliders);
     is_relaxing_ = false;
-    body_->set_velocities(std::vector<Vec3>(body_->velocities().size(), Vec3::Zero()));
+    body_->set_velocities(velocities);
+    if (is_deformed_) {
+        const std::vector<Vec3> x = surfaces();
+        is_deformed_ = !std::equal(x.begin() + first_.back(), x.end(), start.begin() + first_.back(),
+                                   [](const Vec3& a, const Vec3& b) { return (a - b).norm() < kAtRest; });
+    }
     return report;
 }
 
@@ -410,11 +419,25 @@ void ClothGroup::place(int cloth, View<const Vec3> positions)
 {
     cloths_[cloth].take(positions);
     cloths_[cloth].forget();
-    if (contact_)
-        contact_->forget();
     std::vector<Vec3> all(body_->positions().begin(), body_->positions().end());
     std::copy(positions.begin(), positions.end(), all.begin() + first_[cloth]);
-    body_->set_positions(all);
+    restart_from(all);
+}
+
+void ClothGroup::place_soft_body(int body, View<const Vec3> surface)
+{
+    std::vector<Vec3> all(body_->positions().begin(), body_->positions().end());
+    soft_bodies_->place(body, surface, all);
+    restart_from(all);
+    is_deformed_ = true;
+}
+
+/// Moves all unknowns. Nothing is known of contacts there.
+void ClothGroup::restart_from(View<const Vec3> x)
+{
+    if (contact_)
+        contact_->forget();
+    body_->set_positions(x);
     may_cross_ = may_cross_cloth_ = true;
     still_time_ = 0.0;
     still_.clear();

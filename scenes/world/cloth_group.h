@@ -58,8 +58,11 @@ public:
     /// True if cloth is strained beyond its limit.
     bool is_strained() const;
 
-    /// Takes a step from rest and to rest, without gravity and air: cloth relaxes and goes nowhere. Not for a
-    /// group with solids.
+    /// True while relax() still moves soft bodies that place_soft_body() has deformed.
+    bool is_deformed() const { return is_deformed_; }
+
+    /// Takes a step from rest, without gravity and air: cloth and soft bodies relax and go nowhere.
+    /// Velocities stay. Not for a group with solids.
     StepReport relax(double dt, double t_t1, const std::vector<Collider>& colliders);
     bool has_solids() const { return solids_ != nullptr; }
 
@@ -73,6 +76,9 @@ public:
 
     /// Moves the vertices of one cloth to new positions; velocities and rest shape are kept.
     void place(int cloth, View<const Vec3> positions);
+
+    /// Moves the surface of a soft body at the start; see SceneSoftBodies::place().
+    void place_soft_body(int body, View<const Vec3> surface);
 
 private:
     std::unique_ptr<PointMasses> make_body(const Scene& scene, const WorldOptions& options);
@@ -91,6 +97,7 @@ private:
     make_contact(const Scene& scene, const std::vector<Collider>& colliders, const CudaSpace* space);
     int unknown_count() const;
     std::vector<Vec3> surfaces() const;
+    void restart_from(View<const Vec3> x);
     template <typename T>
     View<T> part(View<T> all, int cloth) const;
     void mark_fixed(double t_t1);
@@ -124,6 +131,7 @@ private:
         surface_contact_; ///< the same in all unknowns; null without soft bodies
     std::unique_ptr<PointMasses> body_;
     bool is_relaxing_ = false;              ///< within relax()
+    bool is_deformed_ = false;              ///< see is_deformed()
     garment::DeviceLoads* loads_ = nullptr; ///< owned by body_, on a GPU; null: accelerate()
     std::vector<unsigned char> fixed_;
     std::vector<Vec3> targets_, acceleration_;

@@ -86,7 +86,7 @@ std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const st
         collision::ContactCloth& one = all.emplace_back();
         one.vertex_count = int(surface.positions.size());
         one.mass = mass;
-        one.thickness = std::max(scene.contact.gap, kMinSkin);
+        one.thickness = skin_of_body(scene);
         one.gap = one.thickness;
     };
     for (int i = 0; soft_bodies && i < soft_bodies->count(); ++i)
@@ -107,6 +107,8 @@ std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const st
     }
     return all;
 }
+
+double skin_of_body(const Scene& scene) { return std::max(scene.contact.gap, kMinSkin); }
 
 double room_for_cloth(const Scene& scene)
 {

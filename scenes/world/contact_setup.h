@@ -19,6 +19,9 @@ std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const st
                                                     const SceneSolids* solids,
                                                     const std::vector<const Collider*>& colliders);
 
+/// Thickness of contact around soft bodies and solids [m].
+double skin_of_body(const Scene& scene);
+
 /// Largest room that a cloth of the scene needs between two surfaces that face each other [m].
 double room_for_cloth(const Scene& scene);
 

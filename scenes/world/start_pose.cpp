@@ -1,6 +1,7 @@
 #include "scenes/world/start_pose.h"
 
 #include <cstdio>
+#include <memory>
 
 #include "collision/repair/repair_start.h"
 #include "core/base/error.h"
@@ -27,6 +28,17 @@ collision::StartCloth start_of(const Scene& scene, const scene::Cloth& settings,
     return start;
 }
 
+collision::StartCloth start_of(const Scene& scene, const SceneSoftBodies& bodies, int body)
+{
+    collision::StartCloth start;
+    start.triangles = bodies.state(body).triangles;
+    start.positions = bodies.state(body).positions;
+    start.fixed = bodies.fixed_surface(body);
+    start.layer = scene.soft_bodies[body].layer;
+    start.thickness = start.gap = skin_of_body(scene);
+    return start;
+}
+
 /// Checks the start pose and repairs it if that is enabled and needed.
 collision::StartReport check_and_repair(std::vector<collision::StartCloth>& starts,
                                         const std::vector<collision::ContactCollider>& bodies,
@@ -43,7 +55,15 @@ collision::StartReport check_and_repair(std::vector<collision::StartCloth>& star
     return repair_start(starts, bodies, progress);
 }
 
-/// @throws InvalidInput for a cloth that the repair had to move or strain too much
+/// Name in messages. @param number  of a cloth, then of a soft body
+std::string name_of(const Scene& scene, size_t number)
+{
+    const size_t cloths = scene.cloths.size();
+    return number < cloths ? "cloth \"" + scene.cloths[number].name + "\""
+                           : "soft body \"" + scene.soft_bodies[number - cloths].name + "\"";
+}
+
+/// @throws InvalidInput for a cloth or soft body that the repair had to move or strain too much
 void require_fit(const Scene& scene, const collision::StartReport& report)
 {
     for (size_t c = 0; c < report.changes.size(); ++c) {
@@ -58,13 +78,57 @@ void require_fit(const Scene& scene, const collision::StartReport& report)
                           100.0 * change.strain_p99, 100.0 * kMaxStrain);
         else
             continue;
-        throw InvalidInput(scene.source.string() + ": cloth \"" + scene.cloths[c].name +
-                           "\" does not fit its start pose: to leave bodies and other cloth " + reason +
-                           "; let the avatar begin in the pose that the cloth was made for "
-                           "(\"preroll\": {\"from_bind\": 1}, or another \"start\"), or give another "
-                           "\"scale\", \"translate\" or size; \"contact\": {\"repair_start\": false} leaves "
-                           "it as it is");
+        const bool is_cloth = c < scene.cloths.size();
+        throw InvalidInput(
+            scene.source.string() + ": " + name_of(scene, c) +
+            " does not fit its start pose: to leave bodies and other " +
+            (is_cloth ? "cloth " : "soft bodies ") + reason + "; " +
+            (is_cloth ? "let the avatar begin in the pose that the cloth was made for (\"preroll\": "
+                        "{\"from_bind\": 1}, or another \"start\"), or give another \"scale\", "
+                        "\"translate\" or size; "
+                      : "give another \"translate\" or \"scale\"; ") +
+            "\"contact\": {\"repair_start\": false} leaves it as it is");
     }
+}
+
+/// Surfaces of soft bodies, which stand still while cloth is moved off them.
+std::vector<std::unique_ptr<collision::MeshCollider>>
+still_bodies(const std::vector<collision::StartCloth>& surfaces)
+{
+    std::vector<std::unique_ptr<collision::MeshCollider>> bodies;
+    bodies.reserve(surfaces.size());
+    for (const collision::StartCloth& surface : surfaces)
+        bodies.push_back(std::make_unique<collision::MeshCollider>(
+            MovingMesh{surface.triangles, surface.positions, surface.positions}));
+    return bodies;
+}
+
+/// Moves the soft bodies off the avatars and each other, then cloth off them all.
+/// @param bodies    avatars in contact
+/// @param surfaces  of the soft bodies
+collision::StartReport check_and_repair(std::vector<collision::StartCloth>& cloths,
+                                        std::vector<collision::StartCloth>& surfaces,
+                                        std::vector<collision::ContactCollider> bodies, bool may_repair,
+                                        const collision::RepairProgress& progress)
+{
+    const double of_surfaces = surfaces.empty() ? 0.0 : cloths.empty() ? 1.0 : 0.5;
+    collision::StartReport of_soft_bodies;
+    if (!surfaces.empty())
+        of_soft_bodies = check_and_repair(surfaces, bodies, may_repair, progress.part(0.0, of_surfaces));
+    for (collision::StartDefect& defect : of_soft_bodies.defects) {
+        defect.cloth += int(cloths.size());
+        if (!defect.is_with_body())
+            defect.other += int(cloths.size());
+    }
+    if (cloths.empty())
+        return of_soft_bodies;
+    const auto still = still_bodies(surfaces);
+    for (const auto& body : still)
+        bodies.push_back({body.get(), nullptr});
+    collision::StartReport report =
+        check_and_repair(cloths, bodies, may_repair, progress.part(of_surfaces, 1.0));
+    report.append(of_soft_bodies);
+    return report;
 }
 
 } // namespace
@@ -73,24 +137,34 @@ collision::StartReport repair_start_pose(const Scene& scene, std::vector<ClothGr
                                          const std::vector<Collider>& colliders,
                                          const std::function<void(double)>& progress)
 {
-    std::vector<collision::StartCloth> starts;
-    starts.reserve(scene.cloths.size());
-    for (const ClothGroup& group : groups)
+    std::vector<collision::StartCloth> cloths, surfaces;
+    cloths.reserve(scene.cloths.size());
+    for (const ClothGroup& group : groups) {
         for (const SceneCloth& cloth : group.cloths())
-            starts.push_back(start_of(scene, scene.cloths[starts.size()], cloth));
+            cloths.push_back(start_of(scene, scene.cloths[cloths.size()], cloth));
+        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i)
+            surfaces.push_back(start_of(scene, *group.soft_bodies(), i));
+    }
     const std::vector<const Collider*> bodies = colliders_in_contact(scene, colliders);
-    collision::StartReport report = check_and_repair(
-        starts, contact_colliders(bodies), scene.contact.repair_start, collision::RepairProgress(progress));
+    collision::StartReport report =
+        check_and_repair(cloths, surfaces, contact_colliders(bodies), scene.contact.repair_start,
+                         collision::RepairProgress(progress));
     using Kind = collision::StartDefect::Kind;
     for (collision::StartDefect& defect : report.defects)
-        if (defect.kind == Kind::InsideBody || defect.kind == Kind::CrossesBody)
-            defect.other = int(bodies[defect.other] - colliders.data()); // number of the avatar
+        if (defect.is_with_body())
+            defect.other = defect.other < int(bodies.size())
+                               ? int(bodies[defect.other] - colliders.data())
+                               : defect.other - int(bodies.size()) + int(colliders.size());
     require_fit(scene, report);
-    auto start = starts.begin();
-    for (ClothGroup& group : groups)
-        for (int i = 0; i < int(group.cloths().size()); ++i, ++start)
-            if (report.was_repaired)
-                group.place(i, start->positions);
+    auto cloth = cloths.begin(), surface = surfaces.begin();
+    for (ClothGroup& group : groups) {
+        for (int i = 0; i < int(group.cloths().size()); ++i, ++cloth)
+            if (cloth->positions != group.cloths()[i].state().positions)
+                group.place(i, cloth->positions);
+        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i, ++surface)
+            if (surface->positions != group.soft_bodies()->state(i).positions)
+                group.place_soft_body(i, surface->positions);
+    }
     if (report.remaining(Kind::Crossing) == 0 && report.remaining(Kind::CrossesBody) == 0)
         for (ClothGroup& group : groups)
             group.assume_no_crossings();

@@ -199,8 +199,9 @@ struct World::Parts {
                            [](const ClothState& state) { return !state.panels.empty(); });
     }
 
-    /// Relaxes cloth that the start pose or its repair strain beyond its limit, as long as the strain falls.
-    /// Cloth that shares its group with solids does so in the first steps.
+    /// Relaxes cloth that the start pose or its repair strain beyond its limit, as long as the strain falls,
+    /// and soft bodies that the repair has deformed. Those that share their group with solids do so in the
+    /// first steps.
     StepReport relax_start()
     {
         constexpr int kMaxSteps = 60, kPatience = 5;
@@ -211,8 +212,9 @@ struct World::Parts {
         for (ClothGroup& group : groups) {
             double min_strain = std::numeric_limits<double>::max();
             int stalled = 0;
-            for (int k = 0;
-                 k < kMaxSteps && stalled < kPatience && !group.has_solids() && group.is_strained(); ++k) {
+            for (int k = 0; k < kMaxSteps && !group.has_solids() &&
+                            (group.is_deformed() || (stalled < kPatience && group.is_strained()));
+                 ++k) {
                 const StageScope stage("scenes/relax_start");
                 const StepReport report = group.relax(dt, t_start, colliders);
                 total.merge(report);

@@ -84,8 +84,8 @@ public:
     /// Must not outlive the World.
     std::shared_ptr<const Snapshot> snapshot() const;
 
-    /// Defects of the start pose, and those that its repair left. Cloths and bodies are numbered as in
-    /// Scene::cloths and Scene::avatars.
+    /// Defects of the start pose, and those that its repair left. Surfaces are numbered as in Scene::cloths,
+    /// followed by Scene::soft_bodies; bodies as in Scene::avatars, followed by Scene::soft_bodies.
     const collision::StartReport& start() const;
 
     /// GPU on which it runs; null: the CPU.

@@ -25,13 +25,30 @@ std::string number_of(int count, const std::string& one, const std::string& many
     return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-bool is_with_avatar(Kind kind) { return kind == Kind::InsideBody || kind == Kind::CrossesBody; }
+/// What a defect involves, as "cloth" and its name.
+struct Named {
+    const char* kind;
+    const std::string& name;
+};
 
-/// Name of the avatar or cloth that a defect involves.
-const std::string& other_of(const collision::StartDefect& defect, const scenes::Scene& scene)
+/// @param number  of a cloth, then of a soft body
+Named surface_of(const scenes::Scene& scene, int number)
 {
-    return is_with_avatar(defect.kind) ? scene.avatars[defect.other].name : scene.cloths[defect.other].name;
+    const int cloths = int(scene.cloths.size());
+    return number < cloths ? Named{"cloth", scene.cloths[number].name}
+                           : Named{"soft body", scene.soft_bodies[number - cloths].name};
 }
+
+Named other_of(const collision::StartDefect& defect, const scenes::Scene& scene)
+{
+    if (!defect.is_with_body())
+        return surface_of(scene, defect.other);
+    const int avatars = int(scene.avatars.size());
+    return defect.other < avatars ? Named{"avatar", scene.avatars[defect.other].name}
+                                  : Named{"soft body", scene.soft_bodies[defect.other - avatars].name};
+}
+
+std::string quoted(const Named& named) { return std::string(named.kind) + " \"" + named.name + "\""; }
 
 const char* verb_of(Kind kind)
 {
@@ -67,9 +84,9 @@ std::string line_of(const collision::StartDefect& defect, const scenes::Scene& s
     const Vec3& p = defect.position;
     const std::string at = " at (" + formatted("%.3f", p.x()) + ", " + formatted("%.3f", p.y()) + ", " +
                            formatted("%.3f", p.z()) + ") m";
-    return "cloth \"" + scene.cloths[defect.cloth].name + "\" " + verb_of(defect.kind) +
-           (is_with_avatar(defect.kind) ? " avatar \"" : " cloth \"") + other_of(defect, scene) + "\"" + at +
-           ", " + millimetres(defect.depth) + " deep" + (defect.is_fixed ? ", attached there" : "");
+    return quoted(surface_of(scene, defect.cloth)) + " " + verb_of(defect.kind) + " " +
+           quoted(other_of(defect, scene)) + at + ", " + millimetres(defect.depth) + " deep" +
+           (defect.is_fixed ? ", attached there" : "");
 }
 
 } // namespace
@@ -78,13 +95,17 @@ std::string start_text(const collision::StartReport& report, const scenes::Scene
 {
     if (report.defects.empty())
         return "";
-    std::string text =
-        "start pose: " + number_of(report.vertices_inside(), "vertex", "vertices") + " (" +
-        number_of(report.count(Kind::InsideBody), "penetration", "penetrations") +
-        " with edges and faces) inside avatars, up to " + millimetres(report.deepest(Kind::InsideBody)) +
-        " deep; " + number_of(report.count(Kind::CrossesBody), "triangle", "triangles") +
-        " of cloth crossing avatars; " + number_of(report.count(Kind::Crossing), "crossing", "crossings") +
-        " of cloth with cloth; ";
+    const bool is_soft = !scene.soft_bodies.empty();
+    const std::string bodies = is_soft ? "avatars and soft bodies" : "avatars";
+    const std::string surface = is_soft ? "surfaces" : "cloth";
+    std::string text = "start pose: " + number_of(report.vertices_inside(), "vertex", "vertices") + " (" +
+                       number_of(report.count(Kind::InsideBody), "penetration", "penetrations") +
+                       " with edges and faces) inside " + bodies + ", up to " +
+                       millimetres(report.deepest(Kind::InsideBody)) + " deep; " +
+                       number_of(report.count(Kind::CrossesBody), "triangle", "triangles") + " of " +
+                       surface + " crossing " + bodies + "; " +
+                       number_of(report.count(Kind::Crossing), "crossing", "crossings") + " of " + surface +
+                       " with " + surface + "; ";
     if (const int under = report.count(Kind::UnderLayer))
         text += number_of(under, "layer", "layers") + " under a lower one; ";
     if (!report.was_repaired)
@@ -131,8 +152,8 @@ nlohmann::ordered_json start_json(const collision::StartReport& report, const sc
         defects.push_back({{"kind", word_of(defect.kind)},
                            {"position_m", {defect.position.x(), defect.position.y(), defect.position.z()}},
                            {"depth_m", defect.depth},
-                           {"cloth", scene.cloths[defect.cloth].name},
-                           {"other", other_of(defect, scene)},
+                           {"cloth", surface_of(scene, defect.cloth).name},
+                           {"other", other_of(defect, scene).name},
                            {"vertices", vertices},
                            {"held", defect.is_fixed},
                            {"repaired", defect.is_repaired}});

@@ -10,6 +10,7 @@
 #include "scenes/colliders/select_vertices.h"
 #include "scenes/colliders/vertex_owner.h"
 #include "scenes/surfaces/load_cloth.h"
+#include "volume/mesh/harmonic.h"
 
 namespace toile::scenes {
 
@@ -176,6 +177,45 @@ void SceneSoftBodies::set_start(View<Vec3> positions, View<Vec3> velocities, Vie
             velocities[i] = body.velocity;
             masses[i] = body.density * volumes[i];
         }
+}
+
+/// [vertices] Nonzero for those of the core and of exact attachments.
+std::vector<char> SceneSoftBodies::held(const Body& body) const
+{
+    std::vector<char> held(body.positions.size(), 0);
+    if (body.core)
+        for (const int v : body.core->vertices())
+            held[v] = 1;
+    for (const AttachmentConstraint& attachment : body.attachments)
+        if (!attachment.stiffness())
+            for (const int v : attachment.vertices())
+                held[v] = 1;
+    return held;
+}
+
+std::vector<char> SceneSoftBodies::fixed_surface(int body) const
+{
+    std::vector<char> fixed = held(bodies_[body]);
+    fixed.resize(bodies_[body].surface_count());
+    return fixed;
+}
+
+void SceneSoftBodies::place(int body, View<const Vec3> surface, View<Vec3> x)
+{
+    Body& of = bodies_[body];
+    std::vector<char> is_given = held(of);
+    std::fill_n(is_given.begin(), of.surface_count(), 1);
+    std::vector<Vec3> move(of.positions.size(), Vec3::Zero());
+    for (int v = 0; v < of.surface_count(); ++v)
+        move[v] = surface[v] - of.positions[v];
+    volume::extend_harmonically(of.rest, is_given, move);
+    for (int v = 0; v < of.vertex_count(); ++v) {
+        of.positions[v] += move[v];
+        x[of.unknown(v)] = of.positions[v];
+    }
+    of.surface.positions.assign(surface.begin(), surface.end());
+    if (of.render)
+        of.render->state.positions = render_positions(body, x);
 }
 
 void SceneSoftBodies::append_triangles(std::vector<Triangle>& triangles) const

@@ -52,6 +52,14 @@ public:
     int inverted_count(int body, View<const Vec3> x) const;
 
     void set_start(View<Vec3> positions, View<Vec3> velocities, View<double> masses) const;
+
+    /// [vertices of a surface] nonzero for those that follow a core or an exact attachment, now or later.
+    std::vector<char> fixed_surface(int body) const;
+
+    /// Moves the surface of a body at the start, whose inside follows where it is free.
+    /// @param surface  [vertices of the surface] [m]
+    /// @param x        [unknowns] [m]
+    void place(int body, View<const Vec3> surface, View<Vec3> x);
     std::vector<std::shared_ptr<Energy>> energies() const;
 
     /// Appends the triangles of all surfaces.
@@ -91,6 +99,7 @@ private:
     };
     void add_attachments(const Scene& scene, const std::vector<Collider>& colliders, View<const int> of_file,
                          Body& body);
+    std::vector<char> held(const Body& body) const;
     static void require_one_owner(const Body& body, const std::string& core_location);
     void add_springs();
     static double mass(const Body& body);
