@@ -108,16 +108,16 @@ struct FindPressing {
     TOILE_HD bool operator()(const NearPair& now, ContactPair& out) const
     {
         const double thick = thickness.of(now.vertex, now.is_edge_edge);
-        if (!stopped.empty() && now.distance <= thick && has_stopped(now)) {
+        const bool passes =
+            max_safe_step(now.is_edge_edge, corners_of(now.vertex, base), corners_of(now.vertex, motion),
+                          std::min(kPassing * thick, 0.5 * now.distance)) < 1.0;
+        if (!stopped.empty() && (passes || now.distance <= thick) && has_stopped(now)) {
             out = pair_of(now);
             return true;
         }
         double max_distance = 0.0;
         for (const int v : now.vertex)
             max_distance = std::max(max_distance, slack[v]);
-        const bool passes =
-            max_safe_step(now.is_edge_edge, corners_of(now.vertex, base), corners_of(now.vertex, motion),
-                          std::min(kPassing * thick, 0.5 * now.distance)) < 1.0;
         const NearPair near = passes ? now : soup.at(expected, now);
         // A normal that flips belongs to a vertex or edge that goes around a border, which other pairs stop.
         if (!passes && near.normal.dot(now.normal) < 0.0)

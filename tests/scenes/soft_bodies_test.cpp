@@ -9,9 +9,7 @@
 #include "core/quadrature/tables/table_store.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world/world_crossings.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/volume/blocks.h"
-#include "volume/mesh/msh.h"
+#include "tests/scenes/soft_body_test.h"
 
 namespace toile::test {
 
@@ -19,65 +17,11 @@ using namespace scenes;
 
 namespace {
 
-const std::string kFloor = R"("avatars": [{"name": "floor", "plane": {}}], )";
-
-class SoftBodies : public testing::Test {
-protected:
-    /// A file with a block of edge 0.1 m, its lowest corner in the origin.
-    SoftBodies()
-    {
-        write_msh(folder.path() / "block.msh", make_block(Vec3::Constant(0.1), {4, 4, 4}, 0.1).mesh);
-    }
-
-    World world_of(const std::string& keys, const WorldOptions& options = {}) const
-    {
-        return World(parse_scene("{\"toile\": 1, " + keys + "}", folder.path() / "test.json"), options);
-    }
-    std::string block(const std::string& name, const std::string& keys) const
-    {
-        return R"({"name": ")" + name + R"(", "file": "block.msh", )" + keys + "}";
-    }
-    std::string refusal(const std::string& keys) const
-    {
-        try {
-            world_of(keys);
-        } catch (const InvalidInput& error) {
-            return error.what();
-        }
-        return "";
-    }
-    TemporaryFolder folder;
-};
-
-Vec3 mean(const std::vector<Vec3>& points)
-{
-    Vec3 sum = Vec3::Zero();
-    for (const Vec3& p : points)
-        sum += p;
-    return sum / double(points.size());
-}
-
-double lowest(const std::vector<Vec3>& points)
-{
-    double y = INFINITY;
-    for (const Vec3& p : points)
-        y = std::min(y, p.y());
-    return y;
-}
+class SoftBodies : public SoftBodyTest {};
 
 double volume_of(const ClothState& surface)
 {
     return solid_moments({surface.positions, surface.triangles}, surface.name).volume;
-}
-
-/// Advances to the last frame; every step must end converged.
-void run(World& world)
-{
-    while (world.frame() + 1 < world.frame_count()) {
-        const StepReport report = world.advance_frame();
-        ASSERT_EQ(report.status, StepReport::Status::Converged) << world.frame() << ": " << report.message;
-        ASSERT_EQ(crossing_count(world), 0) << world.frame();
-    }
 }
 
 TEST_F(SoftBodies, FallFreelyAndUndeformed)

@@ -45,14 +45,17 @@ constexpr double kKept = 0.1;
 /// below any fixed tolerance: cloth that should begin to slide would stay where it is, step after step. The
 /// error of its acceleration is at most about kOfDriving, and vanishes with the step below kDrivingOfStep,
 /// gravity's speed in 1/120 s.
-constexpr double kOfDriving = 0.15, kDrivingOfStep = 0.04;
+constexpr double kOfDriving = 0.15, kDrivingOfStep = 0.04, kUndriven = 1e-9;
 
 /// Small Newton steps in succession after which touching cloth has converged. The first leaves contact forces
 /// unbalanced by 14 % of the weight, which moves cloth by next to nothing, but friction by as much.
 constexpr int kSmallSteps = 2;
 
+/// Without external forces, but for rounding, nothing begins to slide.
 double tolerance_by_driving(double driving)
 {
+    if (driving < kUndriven)
+        return std::numeric_limits<double>::infinity();
     return kOfDriving * driving * std::min(1.0, driving / kDrivingOfStep);
 }
 
