@@ -1,6 +1,6 @@
 # make demo, make test: everything from a fresh clone. The build itself is CMake's (CMakePresets.json).
 .DEFAULT_GOAL := help
-.PHONY: help demo gallery test test-dcc bench sanitize fuzz build install format lint clean packages lint-packages fuzz-packages
+.PHONY: help demo gallery test test-dcc bench sanitize fuzz build install format lint clean packages scene-packages lint-packages fuzz-packages
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -31,7 +31,7 @@ gallery: packages ## Make the pictures of docs/guide/gallery.md again (an hour o
 	@cmake --build --preset default --target toile -j $(JOBS)
 	@cmake/setup/gallery.sh $(TOILE)
 
-test: build ## Build everything, and run every test
+test: build scene-packages ## Build everything, and run every test
 	@ctest --preset default -j $(JOBS)
 
 test-dcc: packages ## Compare caches of every format, as Blender and VTK play them (Python 3.11; installs 2 GB into build/dcc)
@@ -78,6 +78,9 @@ clean: ## Remove the builds; out/ stays
 
 packages:
 	@cmake/setup/install_packages.sh build
+
+scene-packages:
+	@cmake/setup/install_packages.sh scenes
 
 lint-packages:
 	@cmake/setup/install_packages.sh lint

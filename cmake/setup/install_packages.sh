@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # install_packages.sh GROUP...   installs the Debian or Ubuntu packages of the groups that are missing
 #
-# Groups: build (compile and test), lint (format and static checks), fuzz (clang with libFuzzer).
+# Groups: build (compile and test), scenes (make the paper's scenes), lint (format and static checks), fuzz (clang
+# with libFuzzer).
 # Asks before it installs. ASSUME_YES=1 or CI=true: installs without asking. SKIP_PACKAGES=1: does nothing,
 # for machines whose packages come from elsewhere.
 set -euo pipefail
@@ -27,6 +28,7 @@ BUILD=(
     libcli11-dev
     libgtest-dev
 )
+SCENES=(python3-numpy python3-scipy python3-skimage python3-matplotlib) # of the system's interpreter
 LINT=(clang-format:clang-format clang-tidy:clang-tidy git:git)
 FUZZ=(clang:clang++ libclang-rt-14-dev)
 OPTIONAL=("ffmpeg:the demo also writes MP4 films" "ccache:rebuilds take seconds")
@@ -50,9 +52,10 @@ collect_wanted() { # group...
     for group in "$@"; do
         case $group in
         build) wanted+=("${BUILD[@]}") ;;
+        scenes) wanted+=("${SCENES[@]}") ;;
         lint) wanted+=("${LINT[@]}") ;;
         fuzz) wanted+=("${FUZZ[@]}") ;;
-        *) fail "unknown package group '$group'; the groups are build, lint and fuzz" ;;
+        *) fail "unknown package group '$group'; the groups are build, scenes, lint and fuzz" ;;
         esac
     done
 }
