@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/scenes/soft_body_test.h"
+#include "tests/scenes/soft_bodies/soft_body_test.h"
 
 namespace toile::test {
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "tests/scenes/soft_body_test.h"
+#include "tests/scenes/soft_bodies/soft_body_test.h"
 
 namespace toile::test {
 

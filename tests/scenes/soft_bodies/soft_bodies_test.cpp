@@ -9,7 +9,7 @@
 #include "core/quadrature/tables/table_store.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world/world_crossings.h"
-#include "tests/scenes/soft_body_test.h"
+#include "tests/scenes/soft_bodies/soft_body_test.h"
 
 namespace toile::test {
 
