@@ -9,7 +9,7 @@ set -euo pipefail
 toile=$1
 shift
 names=("$@")
-((${#names[@]})) || names=(tablecloth outfit_walk tee_pants gathered_walk circle_dance suit_dance runway)
+((${#names[@]})) || names=(tablecloth soft_cushion soft_figure outfit_walk tee_pants gathered_walk circle_dance suit_dance runway)
 export TOILE_DATA_DIR=${TOILE_DATA_DIR:-../shared/data}
 threads=${THREADS:-0}
 edge=${EDGE:-0.015}
@@ -52,6 +52,8 @@ for name in "${names[@]}"; do
     echo "== $name"
     case $name in
     tablecloth) picture "$name" scenes/demo/tablecloth.json 89 640 480 ;;
+    soft_cushion) picture "$name" scenes/details/soft_cushion.json 22 640 480 ;;
+    soft_figure) picture "$name" scenes/details/soft_figure.json 40 ;;
     outfit_walk)
         drape "$name" walk cotton,jersey assets/a_line_skirt.garment.json assets/tee.garment.json
         picture "$name" "out/gallery/$name/scene.json" 100
