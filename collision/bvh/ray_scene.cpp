@@ -38,7 +38,7 @@ RTCRay make_ray(const Vec3& origin, const Vec3& direction, double t_max)
 /// pointer to the first member.
 struct CrossingCount {
     RTCIntersectContext context;
-    int exits_minus_entries = 0;
+    int exits_minus_entries = 0, hits = 0;
 };
 
 /// Counts the hit by the side it comes from and rejects it, so that the traversal continues behind it.
@@ -50,6 +50,7 @@ void count_crossing(const RTCFilterFunctionNArguments* arguments)
     const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
     const float along = ray->dir_x * hit->Ng_x + ray->dir_y * hit->Ng_y + ray->dir_z * hit->Ng_z;
     count->exits_minus_entries += along > 0.0f ? 1 : -1;
+    ++count->hits;
     arguments->valid[0] = 0;
 }
 
@@ -80,8 +81,8 @@ struct RayScene::Trees {
                 *out++ = float(x[k]);
     }
 
-    /// Exits minus entries along an unbounded ray.
-    int count_crossings(const Vec3& origin, const Vec3& direction) const
+    /// Crossings along an unbounded ray.
+    CrossingCount count_crossings(const Vec3& origin, const Vec3& direction) const
     {
         CrossingCount count;
         rtcInitIntersectContext(&count.context);
@@ -89,7 +90,7 @@ struct RayScene::Trees {
         RTCRayHit ray_hit{make_ray(origin, direction, std::numeric_limits<double>::infinity()), {}};
         ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene, &count.context, &ray_hit);
-        return count.exits_minus_entries;
+        return count;
     }
 };
 
@@ -158,10 +159,16 @@ bool RayScene::occluded(const Vec3& origin, const Vec3& direction, double t_max)
     return ray.tfar < 0.0f;
 }
 
+int RayScene::hit_count(const Vec3& origin, const Vec3& direction) const
+{
+    return trees_->count_crossings(origin, direction).hits;
+}
+
 int RayScene::winding_number(const Vec3& point) const
 {
     const auto count = [&](int k) {
-        return trees_->count_crossings(point, Vec3(kDirections[k][0], kDirections[k][1], kDirections[k][2]));
+        return trees_->count_crossings(point, Vec3(kDirections[k][0], kDirections[k][1], kDirections[k][2]))
+            .exits_minus_entries;
     };
     const int first = count(0);
     const int second = count(1);

@@ -48,6 +48,9 @@ public:
     /// True if any triangle is hit at t in (0, t_max). Cheaper than closest_hit.
     bool occluded(const Vec3& origin, const Vec3& direction, double t_max) const;
 
+    /// Number of triangles that an unbounded ray meets, however near each other.
+    int hit_count(const Vec3& origin, const Vec3& direction) const;
+
     /// Winding number of closed meshes around a point: 0 outside, 1 inside, 2 where two parts of a
     /// self-intersecting body overlap, -1 inside a mesh turned inside out. It equals exits minus entries
     /// along a ray. The majority of three fixed directions decides, because a grazing ray can miscount.

@@ -26,9 +26,8 @@ constexpr double kMinDepth = 1e-4;
 /// Directions beside a path in which cloth is looked for.
 constexpr int kSideways = 8;
 
-/// Length of rays [m]; distance behind a hit from which on the next one is looked for [m]; most hits of a
-/// ray.
-constexpr double kReach = 100.0, kPastHit = 1e-5;
+/// Distance behind a hit from which on the next one is looked for [m]; most hits of a path.
+constexpr double kPastHit = 1e-5;
 constexpr int kMaxHits = 64;
 
 /// Slope by which rays along a path leave it [-]: they would meet a vertex, where hits are ambiguous.
@@ -50,31 +49,17 @@ RayScene rays_of(View<const Triangle> triangles, View<const Vec3> x)
     return rays;
 }
 
-/// True if a ray meets an odd number of triangles.
-bool is_odd(const RayScene& rays, const Vec3& origin, const Vec3& direction)
-{
-    bool is_odd = false;
-    double from = 0.0;
-    for (int k = 0; k < kMaxHits; ++k) {
-        const std::optional<RayHit> hit =
-            rays.closest_hit(origin + from * direction, direction, kReach - from);
-        if (!hit)
-            break;
-        is_odd = !is_odd;
-        from += hit->t + kPastHit;
-    }
-    return is_odd;
-}
-
 /// True if cloth that lay behind the middle of a path no longer does, and in no direction stayed where it
 /// was. Seen from a point that cloth does not go through, the number of layers in a direction is odd or even
 /// for ever, unless a border comes past.
 bool has_passed(const PathThrough& path, const RayScene& before, const RayScene& after)
 {
     const Vec3 side = path.direction.unitOrthogonal();
-    const auto was_odd = [&](const Vec3& towards) { return is_odd(before, path.middle0, towards); };
+    const auto was_odd = [&](const Vec3& towards) {
+        return before.hit_count(path.middle0, towards) % 2 != 0;
+    };
     const auto stays_odd = [&](const Vec3& towards) {
-        return was_odd(towards) && is_odd(after, path.middle1, path.rotation * towards);
+        return was_odd(towards) && after.hit_count(path.middle1, path.rotation * towards) % 2 != 0;
     };
     const Vec3 behind = (-path.direction + kAside * side).normalized();
     const Vec3 ahead = (path.direction + kAside * side).normalized();

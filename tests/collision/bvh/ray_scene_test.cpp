@@ -78,6 +78,13 @@ TEST(RayScene, StopsAtTheEndOfTheRay)
     EXPECT_NEAR(scene.closest_hit(origin, -Vec3::UnitY(), 2.1)->t, 2.0, 1e-6);
 }
 
+TEST(RayScene, CountsHitsHoweverNearEachOther)
+{
+    const RayScene scene = scene_of(box_mesh(Vec3(0, 0, 1), Vec3(1, 1, 1.000002)));
+    EXPECT_EQ(scene.hit_count(Vec3(0.4, 0.3, 0.0), Vec3::UnitZ()), 2);
+    EXPECT_EQ(scene.hit_count(Vec3(0.4, 0.3, 0.0), -Vec3::UnitZ()), 0);
+}
+
 TEST(RayScene, NamesTheMeshThatWasHitAndFollowsItWhenItMoves)
 {
     RayScene scene;

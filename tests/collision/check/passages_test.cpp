@@ -88,6 +88,27 @@ TEST(Passages, AreNotWhereClothSlidesAroundARod)
                     .empty());
 }
 
+TEST(Passages, AreNotWhereATipGoesAroundAnEdge)
+{
+    // A needle under a plate, whose tip comes up beside it; the straight path leads through the plate's edge.
+    // Rays beside the path meet the needle twice within micrometres of its tip.
+    TriangleMesh needle;
+    needle.positions = {Vec3(0, -0.02, 0), Vec3(0.03, -0.05, 0.02), Vec3(-0.03, -0.05, 0.02),
+                        Vec3(0, -0.05, -0.03)};
+    needle.triangles = {Triangle(0, 1, 3), Triangle(0, 2, 1), Triangle(0, 3, 2), Triangle(1, 2, 3)};
+    const ClothSamples samples(needle.triangles, needle.vertex_count());
+    const BoxShape plate{Vec3(0.05, 0.01, 0.1)};
+    const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
+    int paths = 0;
+    for (double x = -0.045; x < 0.05; x += 0.003) {
+        const std::vector<Vec3> below = moved(needle.positions, Vec3(x, 0, 0));
+        const std::vector<Vec3> above = moved(needle.positions, Vec3(x + 0.012, 0.08, 0));
+        EXPECT_TRUE(find_passages({samples, below, above}, plate, still, still).empty()) << x;
+        ++paths;
+    }
+    EXPECT_GT(paths, 30);
+}
+
 TEST(Passages, AreFoundWhereALimbLeavesItsSleeve)
 {
     // A ball in a wide sleeve of cloth, which jumps out to the side.
