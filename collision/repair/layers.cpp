@@ -48,14 +48,20 @@ std::set<int> misplaced_layers(const JoinedCloths& cloths, const std::vector<Con
     return layers;
 }
 
-/// [pieces] Volume that a closed piece encloses, negative inside out [m^3]; 0 for one with a border.
+/// [pieces] Volume that a closed piece encloses, negative inside out [m^3]; 0 for others.
 std::vector<double> enclosed_volumes(const JoinedCloths& cloths, View<const Vec3> x)
 {
     std::vector<double> volume(cloths.piece_count(), 0.0);
-    for (const Triangle& t : cloths.triangles)
-        volume[cloths.piece[t[0]]] += x[t[0]].dot(x[t[1]].cross(x[t[2]])) / 6.0;
+    std::vector<int> origin(cloths.piece_count(), -1); // a vertex of the piece
+    for (const Triangle& t : cloths.triangles) {
+        const int piece = cloths.piece[t[0]];
+        if (origin[piece] < 0)
+            origin[piece] = t[0];
+        const Vec3& o = x[origin[piece]];
+        volume[piece] += (x[t[0]] - o).dot((x[t[1]] - o).cross(x[t[2]] - o)) / 6.0;
+    }
     for (int e = 0; e < cloths.edges.edge_count(); ++e)
-        if (cloths.edges.triangles.of(e).size() == 1)
+        if (cloths.edges.triangles.of(e).size() != 2)
             volume[cloths.piece[cloths.edges.vertex[e][0]]] = 0.0;
     return volume;
 }

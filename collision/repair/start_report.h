@@ -37,7 +37,7 @@ struct StartReport {
     int passes = 0;                   ///< passes of growing bodies and untangling
     double max_strain = 0.0;          ///< [-] largest |length / start length - 1| of an edge after it
     double rms_strain = 0.0;          ///< [-] of all edges
-    int edge_count = 0;               ///< of all edges
+    int edge_count = 0;               ///< number of edges
     double max_move = 0.0;            ///< [m] of a vertex
 
     /// What the repair did to one cloth.

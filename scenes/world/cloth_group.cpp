@@ -244,18 +244,20 @@ bool ClothGroup::is_strained() const
 StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>& colliders)
 {
     TOILE_ASSERT(!solids_);
-    constexpr double kAtRest = 1e-4; // [m] moved in a step
+    constexpr double kAtRest = 1.0; // [m/s^2] of all vertices: a tenth of gravity
     const std::vector<Vec3> velocities(body_->velocities().begin(), body_->velocities().end());
     const std::vector<Vec3> start = is_deformed_ ? surfaces() : std::vector<Vec3>();
     body_->set_velocities(std::vector<Vec3>(velocities.size(), Vec3::Zero()));
     is_relaxing_ = true;
     StepReport report = step(dt, t_t1, colliders);
     is_relaxing_ = false;
+    forget_rest(); // it is not that of a body with weight
     body_->set_velocities(velocities);
     if (is_deformed_) {
         const std::vector<Vec3> x = surfaces();
-        is_deformed_ = !std::equal(x.begin() + first_.back(), x.end(), start.begin() + first_.back(),
-                                   [](const Vec3& a, const Vec3& b) { return (a - b).norm() < kAtRest; });
+        is_deformed_ =
+            !std::equal(x.begin() + first_.back(), x.end(), start.begin() + first_.back(),
+                        [dt](const Vec3& a, const Vec3& b) { return (a - b).norm() < kAtRest * dt * dt; });
     }
     return report;
 }
@@ -424,12 +426,16 @@ void ClothGroup::place(int cloth, View<const Vec3> positions)
     restart_from(all);
 }
 
-void ClothGroup::place_soft_body(int body, View<const Vec3> surface)
+void ClothGroup::place_soft_bodies(const std::vector<std::vector<Vec3>>& surfaces)
 {
     std::vector<Vec3> all(body_->positions().begin(), body_->positions().end());
-    soft_bodies_->place(body, surface, all);
-    restart_from(all);
-    is_deformed_ = true;
+    for (int i = 0; i < int(surfaces.size()); ++i)
+        if (surfaces[i] != soft_bodies_->state(i).positions) {
+            soft_bodies_->place(i, surfaces[i], all);
+            is_deformed_ = true;
+        }
+    if (is_deformed_)
+        restart_from(all);
 }
 
 /// Moves all unknowns. Nothing is known of contacts there.
@@ -439,6 +445,11 @@ void ClothGroup::restart_from(View<const Vec3> x)
         contact_->forget();
     body_->set_positions(x);
     may_cross_ = may_cross_cloth_ = true;
+    forget_rest();
+}
+
+void ClothGroup::forget_rest()
+{
     still_time_ = 0.0;
     still_.clear();
 }

@@ -58,7 +58,7 @@ public:
     /// True if cloth is strained beyond its limit.
     bool is_strained() const;
 
-    /// True while relax() still moves soft bodies that place_soft_body() has deformed.
+    /// True while relax() still moves soft bodies that place_soft_bodies() has deformed.
     bool is_deformed() const { return is_deformed_; }
 
     /// Takes a step from rest, without gravity and air: cloth and soft bodies relax and go nowhere.
@@ -77,8 +77,9 @@ public:
     /// Moves the vertices of one cloth to new positions; velocities and rest shape are kept.
     void place(int cloth, View<const Vec3> positions);
 
-    /// Moves the surface of a soft body at the start; see SceneSoftBodies::place().
-    void place_soft_body(int body, View<const Vec3> surface);
+    /// Moves the surfaces of soft bodies at the start, where they differ; see SceneSoftBodies::place().
+    /// @param surfaces  [soft bodies] positions of all vertices [m]
+    void place_soft_bodies(const std::vector<std::vector<Vec3>>& surfaces);
 
 private:
     std::unique_ptr<PointMasses> make_body(const Scene& scene, const WorldOptions& options);
@@ -98,6 +99,7 @@ private:
     int unknown_count() const;
     std::vector<Vec3> surfaces() const;
     void restart_from(View<const Vec3> x);
+    void forget_rest();
     template <typename T>
     View<T> part(View<T> all, int cloth) const;
     void mark_fixed(double t_t1);

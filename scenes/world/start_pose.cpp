@@ -55,14 +55,6 @@ collision::StartReport check_and_repair(std::vector<collision::StartCloth>& star
     return repair_start(starts, bodies, progress);
 }
 
-/// Name in messages. @param number  of a cloth, then of a soft body
-std::string name_of(const Scene& scene, size_t number)
-{
-    const size_t cloths = scene.cloths.size();
-    return number < cloths ? "cloth \"" + scene.cloths[number].name + "\""
-                           : "soft body \"" + scene.soft_bodies[number - cloths].name + "\"";
-}
-
 /// @throws InvalidInput for a cloth or soft body that the repair had to move or strain too much
 void require_fit(const Scene& scene, const collision::StartReport& report)
 {
@@ -80,7 +72,7 @@ void require_fit(const Scene& scene, const collision::StartReport& report)
             continue;
         const bool is_cloth = c < scene.cloths.size();
         throw InvalidInput(
-            scene.source.string() + ": " + name_of(scene, c) +
+            scene.source.string() + ": " + surface_of(scene, int(c)).quoted() +
             " does not fit its start pose: to leave bodies and other " +
             (is_cloth ? "cloth " : "soft bodies ") + reason + "; " +
             (is_cloth ? "let the avatar begin in the pose that the cloth was made for (\"preroll\": "
@@ -91,9 +83,9 @@ void require_fit(const Scene& scene, const collision::StartReport& report)
     }
 }
 
-/// Surfaces of soft bodies, which stand still while cloth is moved off them.
+/// Surfaces as bodies that do not move.
 std::vector<std::unique_ptr<collision::MeshCollider>>
-still_bodies(const std::vector<collision::StartCloth>& surfaces)
+fixed_bodies(const std::vector<collision::StartCloth>& surfaces)
 {
     std::vector<std::unique_ptr<collision::MeshCollider>> bodies;
     bodies.reserve(surfaces.size());
@@ -104,17 +96,17 @@ still_bodies(const std::vector<collision::StartCloth>& surfaces)
 }
 
 /// Moves the soft bodies off the avatars and each other, then cloth off them all.
-/// @param bodies    avatars in contact
-/// @param surfaces  of the soft bodies
-collision::StartReport check_and_repair(std::vector<collision::StartCloth>& cloths,
-                                        std::vector<collision::StartCloth>& surfaces,
-                                        std::vector<collision::ContactCollider> bodies, bool may_repair,
-                                        const collision::RepairProgress& progress)
+/// @param bodies       avatars in contact
+/// @param soft_bodies  their surfaces
+collision::StartReport repair_bodies_then_cloth(std::vector<collision::StartCloth>& cloths,
+                                                std::vector<collision::StartCloth>& soft_bodies,
+                                                std::vector<collision::ContactCollider> bodies,
+                                                bool may_repair, const collision::RepairProgress& progress)
 {
-    const double of_surfaces = surfaces.empty() ? 0.0 : cloths.empty() ? 1.0 : 0.5;
+    const double of_bodies = soft_bodies.empty() ? 0.0 : cloths.empty() ? 1.0 : 0.5;
     collision::StartReport of_soft_bodies;
-    if (!surfaces.empty())
-        of_soft_bodies = check_and_repair(surfaces, bodies, may_repair, progress.part(0.0, of_surfaces));
+    if (!soft_bodies.empty())
+        of_soft_bodies = check_and_repair(soft_bodies, bodies, may_repair, progress.part(0.0, of_bodies));
     for (collision::StartDefect& defect : of_soft_bodies.defects) {
         defect.cloth += int(cloths.size());
         if (!defect.is_with_body())
@@ -122,49 +114,84 @@ collision::StartReport check_and_repair(std::vector<collision::StartCloth>& clot
     }
     if (cloths.empty())
         return of_soft_bodies;
-    const auto still = still_bodies(surfaces);
-    for (const auto& body : still)
+    const auto fixed = fixed_bodies(soft_bodies);
+    for (const auto& body : fixed)
         bodies.push_back({body.get(), nullptr});
     collision::StartReport report =
-        check_and_repair(cloths, bodies, may_repair, progress.part(of_surfaces, 1.0));
+        check_and_repair(cloths, bodies, may_repair, progress.part(of_bodies, 1.0));
     report.append(of_soft_bodies);
+    if (report.was_repaired)
+        progress.update(1.0);
     return report;
 }
 
-} // namespace
-
-collision::StartReport repair_start_pose(const Scene& scene, std::vector<ClothGroup>& groups,
-                                         const std::vector<Collider>& colliders,
-                                         const std::function<void(double)>& progress)
+/// Numbers bodies as the scene does.
+/// @param bodies  avatars in contact; the defects number them, and then the soft bodies
+void number_by_scene(const std::vector<const Collider*>& bodies, const std::vector<Collider>& colliders,
+                     collision::StartReport& report)
 {
-    std::vector<collision::StartCloth> cloths, surfaces;
-    cloths.reserve(scene.cloths.size());
-    for (const ClothGroup& group : groups) {
-        for (const SceneCloth& cloth : group.cloths())
-            cloths.push_back(start_of(scene, scene.cloths[cloths.size()], cloth));
-        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i)
-            surfaces.push_back(start_of(scene, *group.soft_bodies(), i));
-    }
-    const std::vector<const Collider*> bodies = colliders_in_contact(scene, colliders);
-    collision::StartReport report =
-        check_and_repair(cloths, surfaces, contact_colliders(bodies), scene.contact.repair_start,
-                         collision::RepairProgress(progress));
-    using Kind = collision::StartDefect::Kind;
     for (collision::StartDefect& defect : report.defects)
         if (defect.is_with_body())
             defect.other = defect.other < int(bodies.size())
                                ? int(bodies[defect.other] - colliders.data())
                                : defect.other - int(bodies.size()) + int(colliders.size());
-    require_fit(scene, report);
-    auto cloth = cloths.begin(), surface = surfaces.begin();
-    for (ClothGroup& group : groups) {
+}
+
+/// Moves what the repair has moved.
+void place(const std::vector<collision::StartCloth>& cloths,
+           const std::vector<collision::StartCloth>& soft_bodies, std::vector<ClothGroup>& groups)
+{
+    auto cloth = cloths.begin();
+    for (ClothGroup& group : groups)
         for (int i = 0; i < int(group.cloths().size()); ++i, ++cloth)
             if (cloth->positions != group.cloths()[i].state().positions)
                 group.place(i, cloth->positions);
-        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i, ++surface)
-            if (surface->positions != group.soft_bodies()->state(i).positions)
-                group.place_soft_body(i, surface->positions);
+    if (soft_bodies.empty())
+        return;
+    std::vector<std::vector<Vec3>> surfaces;
+    surfaces.reserve(soft_bodies.size());
+    for (const collision::StartCloth& body : soft_bodies)
+        surfaces.push_back(body.positions);
+    groups.front().place_soft_bodies(surfaces);
+}
+
+} // namespace
+
+std::string NamedPart::quoted() const { return kind + (" \"" + name) + "\""; }
+
+NamedPart surface_of(const Scene& scene, int number)
+{
+    const int cloths = int(scene.cloths.size());
+    return number < cloths ? NamedPart{"cloth", scene.cloths[number].name}
+                           : NamedPart{"soft body", scene.soft_bodies[number - cloths].name};
+}
+
+NamedPart body_of(const Scene& scene, int number)
+{
+    const int avatars = int(scene.avatars.size());
+    return number < avatars ? NamedPart{"avatar", scene.avatars[number].name}
+                            : NamedPart{"soft body", scene.soft_bodies[number - avatars].name};
+}
+
+collision::StartReport repair_start_pose(const Scene& scene, std::vector<ClothGroup>& groups,
+                                         const std::vector<Collider>& colliders,
+                                         const std::function<void(double)>& progress)
+{
+    std::vector<collision::StartCloth> cloths, soft_bodies;
+    for (const ClothGroup& group : groups) {
+        for (const SceneCloth& cloth : group.cloths())
+            cloths.push_back(start_of(scene, scene.cloths[cloths.size()], cloth));
+        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i)
+            soft_bodies.push_back(start_of(scene, *group.soft_bodies(), i));
     }
+    const std::vector<const Collider*> bodies = colliders_in_contact(scene, colliders);
+    collision::StartReport report =
+        repair_bodies_then_cloth(cloths, soft_bodies, contact_colliders(bodies), scene.contact.repair_start,
+                                 collision::RepairProgress(progress));
+    number_by_scene(bodies, colliders, report);
+    require_fit(scene, report);
+    place(cloths, soft_bodies, groups);
+    using Kind = collision::StartDefect::Kind;
     if (report.remaining(Kind::Crossing) == 0 && report.remaining(Kind::CrossesBody) == 0)
         for (ClothGroup& group : groups)
             group.assume_no_crossings();

@@ -204,15 +204,16 @@ struct World::Parts {
     /// first steps.
     StepReport relax_start()
     {
-        constexpr int kMaxSteps = 60, kPatience = 5;
-        constexpr double kProgress = 0.99;
+        constexpr int kMinSteps = 60, kPatience = 5;
+        constexpr double kProgress = 0.99, kMaxTime = 0.5; // [-], [s]
         const double dt = control.first() * control.tick(), t_start = -settle_ticks() * control.tick();
+        const int max_steps = std::max(kMinSteps, int(kMaxTime / dt));
         const Cancellation::Scope cancellation(goes_on);
         StepReport total;
         for (ClothGroup& group : groups) {
             double min_strain = std::numeric_limits<double>::max();
             int stalled = 0;
-            for (int k = 0; k < kMaxSteps && !group.has_solids() &&
+            for (int k = 0; k < max_steps && !group.has_solids() &&
                             (group.is_deformed() || (stalled < kPatience && group.is_strained()));
                  ++k) {
                 const StageScope stage("scenes/relax_start");
@@ -223,7 +224,7 @@ struct World::Parts {
                 stalled = report.max_strain < kProgress * min_strain ? 0 : stalled + 1;
                 min_strain = std::min(min_strain, report.max_strain);
                 is_shown = false;
-                tell("relaxation of the start", (k + 1.0) / kMaxSteps);
+                tell("relaxation of the start", (k + 1.0) / max_steps);
             }
         }
         tell("relaxation of the start", 1.0);

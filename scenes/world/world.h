@@ -84,8 +84,8 @@ public:
     /// Must not outlive the World.
     std::shared_ptr<const Snapshot> snapshot() const;
 
-    /// Defects of the start pose, and those that its repair left. Surfaces are numbered as in Scene::cloths,
-    /// followed by Scene::soft_bodies; bodies as in Scene::avatars, followed by Scene::soft_bodies.
+    /// Defects of the start pose, and those that its repair left. surface_of() and body_of() in start_pose.h
+    /// name what is numbered.
     const collision::StartReport& start() const;
 
     /// GPU on which it runs; null: the CPU.

@@ -3,14 +3,16 @@
 
     paper_scenes.py --toile PATH --assets DIR SCENE FRAMES [--touches-nothing]
 
-All steps converge, there is contact unless nothing touches, and the certificate holds. Scenes are made by the interpreter in TOILE_PYTHON, by
-default this one or the system's. Exit codes: 0 so it is, 1 not, 77 no interpreter has the packages.
+All steps converge, there is contact unless nothing touches, and the certificate holds. Scenes are made by the
+interpreter in TOILE_PYTHON, by default this one or the system's. Exit codes: 0 so it is, 1 not, 77 no interpreter has
+the packages.
 """
 
 import argparse
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -23,13 +25,13 @@ def find_interpreter():
     """An interpreter with the packages, or None and why there is none."""
     reasons = []
     for python in [os.environ["TOILE_PYTHON"]] if "TOILE_PYTHON" in os.environ else [sys.executable, SYSTEM_PYTHON]:
-        if not pathlib.Path(python).exists():
+        if shutil.which(python) is None:
             reasons.append(f"{python} does not exist")
             continue
         found = subprocess.run([python, "-c", f"import {PACKAGES}"], stderr=subprocess.PIPE, text=True)
         if found.returncode == 0:
             return python, ""
-        reasons.append(f"{python} says: {found.stderr.splitlines()[-1]}")
+        reasons.append(f"{python} says: {(found.stderr.splitlines() or ['nothing'])[-1]}")
     return None, "; ".join(reasons)
 
 

@@ -41,9 +41,7 @@ ElasticSolid::ElasticSolid(std::shared_ptr<const RestTets> rest, std::vector<Lam
 void ElasticSolid::add_hessian(Triplets& H) const
 {
     for (int t = 0; t < rest_->tet_count(); ++t) {
-        Eigen::Matrix<double, 4, 3> hats; // gradients of the hat functions
-        hats.bottomRows<3>() = rest_->edges_inv[t];
-        hats.row(0) = -hats.bottomRows<3>().colwise().sum();
+        const Eigen::Matrix<double, 4, 3> hats = hat_gradients(rest_->edges_inv[t]);
         const Eigen::Matrix4d block =
             rest_->volumes[t] * (2.0 * lame_[t].mu + lame_[t].lambda) * hats * hats.transpose();
         for (int i = 0; i < 4; ++i)

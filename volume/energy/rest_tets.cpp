@@ -9,8 +9,6 @@
 
 namespace toile::volume {
 
-namespace {
-
 Mat3 edges_of(const Tet& tet, View<const Vec3> x)
 {
     Mat3 edges;
@@ -18,6 +16,16 @@ Mat3 edges_of(const Tet& tet, View<const Vec3> x)
         edges.col(k) = x[tet[k + 1]] - x[tet[0]];
     return edges;
 }
+
+Eigen::Matrix<double, 4, 3> hat_gradients(const Mat3& edges_inv)
+{
+    Eigen::Matrix<double, 4, 3> gradients;
+    gradients.bottomRows<3>() = edges_inv;
+    gradients.row(0) = -edges_inv.colwise().sum();
+    return gradients;
+}
+
+namespace {
 
 /// Smallest height over longest edge of a tetrahedron [-], negative inside out.
 double height_ratio(const Tet& tet, View<const Vec3> x)

@@ -22,6 +22,14 @@ struct RestTets {
     std::vector<double> vertex_volumes() const;
 };
 
+/// Edges x1 - x0, x2 - x0, x3 - x0 of a tetrahedron, in columns [m].
+Mat3 edges_of(const Tet& tet, View<const Vec3> x);
+
+/// Gradients of the linear functions that are 1 in one corner of a tetrahedron and 0 in the others, in rows
+/// [1/m].
+/// @param edges_inv  inverse of edges_of()
+Eigen::Matrix<double, 4, 3> hat_gradients(const Mat3& edges_inv);
+
 /// @throws InvalidInput naming `source` and the first tetrahedron whose height is below kMinHeightRatio of
 ///         its longest edge
 void require_no_slivers(const TetMesh& mesh, const std::string& source);

@@ -4,22 +4,14 @@
 #include <Eigen/IterativeLinearSolvers>
 
 #include "core/linear/sparse_matrix.h"
+#include "volume/energy/rest_tets.h"
 
 namespace toile::volume {
 
 namespace {
 
-/// Gradients of the four corners' linear functions: columns [1/m].
-Eigen::Matrix<double, 3, 4> corner_gradients(const Tet& tet, View<const Vec3> x)
-{
-    Mat3 edges;
-    for (int k = 0; k < 3; ++k)
-        edges.col(k) = x[tet[k + 1]] - x[tet[0]];
-    Eigen::Matrix<double, 3, 4> gradients;
-    gradients.rightCols<3>() = edges.inverse().transpose();
-    gradients.col(0) = -gradients.rightCols<3>().rowwise().sum();
-    return gradients;
-}
+/// Residual relative to the right side [-].
+constexpr double kTolerance = 1e-6;
 
 } // namespace
 
@@ -34,10 +26,10 @@ void extend_harmonically(const TetMesh& mesh, View<const char> is_given, View<Ve
         return;
 
     Triplets entries;
-    Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(rows, 3), free = right;
+    Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(rows, 3);
     for (const Tet& tet : mesh.tets) {
-        const Eigen::Matrix<double, 3, 4> gradients = corner_gradients(tet, mesh.positions);
-        const Eigen::Matrix4d stiffness = volume_of(tet, mesh.positions) * gradients.transpose() * gradients;
+        const Eigen::Matrix<double, 4, 3> hats = hat_gradients(edges_of(tet, mesh.positions).inverse());
+        const Eigen::Matrix4d stiffness = volume_of(tet, mesh.positions) * hats * hats.transpose();
         for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4 && row[tet[a]] >= 0; ++b)
                 if (row[tet[b]] >= 0)
@@ -48,11 +40,12 @@ void extend_harmonically(const TetMesh& mesh, View<const char> is_given, View<Ve
     SparseMatrix laplacian(rows, rows);
     laplacian.setFromTriplets(entries.begin(), entries.end());
     Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver(laplacian);
-    solver.setTolerance(1e-6);
-    free = solver.solve(right);
+    solver.setTolerance(kTolerance);
+    const Eigen::MatrixX3d solution = solver.solve(right);
+    TOILE_ASSERT(solver.info() == Eigen::Success);
     for (int v = 0; v < mesh.vertex_count(); ++v)
         if (row[v] >= 0)
-            values[v] = free.row(row[v]).transpose();
+            values[v] = solution.row(row[v]).transpose();
 }
 
 } // namespace toile::volume

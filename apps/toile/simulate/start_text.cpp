@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "scenes/world/start_pose.h"
+
 namespace toile::app {
 
 namespace {
@@ -25,30 +27,11 @@ std::string number_of(int count, const std::string& one, const std::string& many
     return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-/// What a defect involves, as "cloth" and its name.
-struct Named {
-    const char* kind;
-    const std::string& name;
-};
-
-/// @param number  of a cloth, then of a soft body
-Named surface_of(const scenes::Scene& scene, int number)
+scenes::NamedPart other_of(const collision::StartDefect& defect, const scenes::Scene& scene)
 {
-    const int cloths = int(scene.cloths.size());
-    return number < cloths ? Named{"cloth", scene.cloths[number].name}
-                           : Named{"soft body", scene.soft_bodies[number - cloths].name};
+    return defect.is_with_body() ? scenes::body_of(scene, defect.other)
+                                 : scenes::surface_of(scene, defect.other);
 }
-
-Named other_of(const collision::StartDefect& defect, const scenes::Scene& scene)
-{
-    if (!defect.is_with_body())
-        return surface_of(scene, defect.other);
-    const int avatars = int(scene.avatars.size());
-    return defect.other < avatars ? Named{"avatar", scene.avatars[defect.other].name}
-                                  : Named{"soft body", scene.soft_bodies[defect.other - avatars].name};
-}
-
-std::string quoted(const Named& named) { return std::string(named.kind) + " \"" + named.name + "\""; }
 
 const char* verb_of(Kind kind)
 {
@@ -64,13 +47,14 @@ const char* verb_of(Kind kind)
     return "crosses";
 }
 
-const char* word_of(Kind kind)
+/// @param is_soft  the other is a soft body
+const char* word_of(Kind kind, bool is_soft)
 {
     switch (kind) {
     case Kind::InsideBody:
-        return "inside_avatar";
+        return is_soft ? "inside_soft_body" : "inside_avatar";
     case Kind::CrossesBody:
-        return "crosses_avatar";
+        return is_soft ? "crosses_soft_body" : "crosses_avatar";
     case Kind::UnderLayer:
         return "under_layer";
     case Kind::Crossing:
@@ -84,9 +68,9 @@ std::string line_of(const collision::StartDefect& defect, const scenes::Scene& s
     const Vec3& p = defect.position;
     const std::string at = " at (" + formatted("%.3f", p.x()) + ", " + formatted("%.3f", p.y()) + ", " +
                            formatted("%.3f", p.z()) + ") m";
-    return quoted(surface_of(scene, defect.cloth)) + " " + verb_of(defect.kind) + " " +
-           quoted(other_of(defect, scene)) + at + ", " + millimetres(defect.depth) + " deep" +
-           (defect.is_fixed ? ", attached there" : "");
+    return scenes::surface_of(scene, defect.cloth).quoted() + " " + verb_of(defect.kind) + " " +
+           other_of(defect, scene).quoted() + at + ", " + millimetres(defect.depth) + " deep" +
+           (defect.is_fixed ? ", held there" : "");
 }
 
 } // namespace
@@ -95,9 +79,9 @@ std::string start_text(const collision::StartReport& report, const scenes::Scene
 {
     if (report.defects.empty())
         return "";
-    const bool is_soft = !scene.soft_bodies.empty();
-    const std::string bodies = is_soft ? "avatars and soft bodies" : "avatars";
-    const std::string surface = is_soft ? "surfaces" : "cloth";
+    const bool has_soft_bodies = !scene.soft_bodies.empty();
+    const std::string bodies = has_soft_bodies ? "avatars and soft bodies" : "avatars";
+    const std::string surface = has_soft_bodies ? "surfaces" : "cloth";
     std::string text = "start pose: " + number_of(report.vertices_inside(), "vertex", "vertices") + " (" +
                        number_of(report.count(Kind::InsideBody), "penetration", "penetrations") +
                        " with edges and faces) inside " + bodies + ", up to " +
@@ -146,14 +130,15 @@ nlohmann::ordered_json start_json(const collision::StartReport& report, const sc
                                    {"max_move_m", report.max_move}};
     nlohmann::ordered_json& defects = json["places"] = nlohmann::ordered_json::array();
     for (const collision::StartDefect& defect : report.defects) {
+        const scenes::NamedPart other = other_of(defect, scene);
         nlohmann::ordered_json vertices = nlohmann::ordered_json::array();
         for (int k = 0; k < 3 && defect.vertex[k] >= 0; ++k)
             vertices.push_back(defect.vertex[k]);
-        defects.push_back({{"kind", word_of(defect.kind)},
+        defects.push_back({{"kind", word_of(defect.kind, other.kind == "soft body")},
                            {"position_m", {defect.position.x(), defect.position.y(), defect.position.z()}},
                            {"depth_m", defect.depth},
-                           {"cloth", surface_of(scene, defect.cloth).name},
-                           {"other", other_of(defect, scene).name},
+                           {"cloth", scenes::surface_of(scene, defect.cloth).name},
+                           {"other", other.name},
                            {"vertices", vertices},
                            {"held", defect.is_fixed},
                            {"repaired", defect.is_repaired}});

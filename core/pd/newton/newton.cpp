@@ -44,19 +44,18 @@ constexpr double kKept = 0.1;
 /// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
 /// below any fixed tolerance: cloth that should begin to slide would stay where it is, step after step. The
 /// error of its acceleration is at most about kOfDriving, and vanishes with the step below kDrivingOfStep,
-/// gravity's speed in 1/120 s.
-constexpr double kOfDriving = 0.15, kDrivingOfStep = 0.04, kUndriven = 1e-9;
+/// gravity's speed in 1/120 s. kReachable is a speed that
+/// rounding leaves to be found [m/s].
+constexpr double kOfDriving = 0.15, kDrivingOfStep = 0.04, kReachable = 1e-6;
 
 /// Small Newton steps in succession after which touching cloth has converged. The first leaves contact forces
 /// unbalanced by 14 % of the weight, which moves cloth by next to nothing, but friction by as much.
 constexpr int kSmallSteps = 2;
 
-/// Without external forces, but for rounding, nothing begins to slide.
+/// @param driving  speed that external forces add in the step [m/s]
 double tolerance_by_driving(double driving)
 {
-    if (driving < kUndriven)
-        return std::numeric_limits<double>::infinity();
-    return kOfDriving * driving * std::min(1.0, driving / kDrivingOfStep);
+    return std::max(kReachable, kOfDriving * driving * std::min(1.0, driving / kDrivingOfStep));
 }
 
 /// Corrections of a direction by the contact ahead. Most need one or two.

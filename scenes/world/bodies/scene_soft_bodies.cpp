@@ -210,7 +210,7 @@ void SceneSoftBodies::place(int body, View<const Vec3> surface, View<Vec3> x)
         move[v] = surface[v] - of.positions[v];
     volume::extend_harmonically(of.rest, is_given, move);
     for (int v = 0; v < of.vertex_count(); ++v) {
-        of.positions[v] += move[v];
+        of.positions[v] = v < of.surface_count() ? surface[v] : Vec3(of.positions[v] + move[v]);
         x[of.unknown(v)] = of.positions[v];
     }
     of.surface.positions.assign(surface.begin(), surface.end());

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "scenes/format/read_scene.h"
+#include "scenes/world/world.h"
 #include "scenes/world/world_crossings.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/volume/blocks.h"
@@ -24,10 +27,13 @@ protected:
         write_msh(folder.path() / "block.msh", make_block(Vec3::Constant(0.1), {4, 4, 4}, 0.1).mesh);
     }
 
+    scenes::Scene scene_of(const std::string& keys) const
+    {
+        return scenes::parse_scene("{\"toile\": 1, " + keys + "}", folder.path() / "test.json");
+    }
     scenes::World world_of(const std::string& keys, const scenes::WorldOptions& options = {}) const
     {
-        return scenes::World(scenes::parse_scene("{\"toile\": 1, " + keys + "}", folder.path() / "test.json"),
-                             options);
+        return scenes::World(scene_of(keys), options);
     }
     std::string block(const std::string& name, const std::string& keys) const
     {

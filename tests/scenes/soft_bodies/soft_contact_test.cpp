@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -135,7 +136,16 @@ TEST_F(SoftContact, ConvergesWithoutGravity)
     EXPECT_GT(mean(world.surfaces()[1].positions).x(), right + 0.05);
 }
 
-/// Bodies of others: they fall tilted onto a plane.
+TEST_F(SoftContact, ConvergesWhereDampingHasStoppedIt)
+{
+    World world =
+        world_of(R"("frames": 12, "gravity": [0, 0, 0], "cloths": [], "soft_bodies": [)" +
+                 block("left", R"("young": 20000, "damping": 50, "velocity": [2, 0, 0])") + ", " +
+                 block("right", R"("young": 20000, "damping": 50, "translate": [0.12, 0.03, 0.02])") + "]");
+    run(world);
+}
+
+/// Files that were not made for these tests: their bodies fall tilted onto a plane.
 class FoundBody : public SoftBodyTest, public testing::WithParamInterface<std::array<const char*, 2>> {};
 
 TEST_P(FoundBody, LandsWithoutCrossingsOrTetrahedraInsideOut)

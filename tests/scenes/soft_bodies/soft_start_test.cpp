@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <array>
+
+#include "scenes/world/start_pose.h"
 #include "tests/scenes/soft_bodies/soft_body_test.h"
 
 namespace toile::test {
@@ -105,6 +108,49 @@ TEST_F(SoftStart, MovesClothOutOfBodiesThatItDoesNotCross)
     EXPECT_EQ(world.start().remaining(Kind::InsideBody), 0);
     EXPECT_GT(lowest(world.surfaces()[0].positions), 0.1);
     EXPECT_EQ(world.start().changes[1].max_move, 0.0);
+}
+
+TEST_F(SoftStart, NamesWhatItNumbers)
+{
+    // The second cloth starts in the second body, which crosses the first one and the second avatar.
+    const Scene scene = scene_of(R"("frames": 1,
+        "avatars": [{"name": "ball", "sphere": {"radius": 0.01}, "translate": [1, 1, 1]}, {"name": "floor", "plane": {}}],
+        "cloths": [{"name": "far", "translate": [2, 1, 0], "rectangle": {"size": [0.06, 0.06], "resolution": 0.01}},
+                   {"name": "patch", "translate": [0.18, 0.094, 0.05], "rectangle": {"size": [0.04, 0.04], "resolution": 0.01}}],
+        "contact": {"repair_start": false}, "soft_bodies": [)" +
+                                 block("first", R"("translate": [0, 0.002, 0])") + ", " +
+                                 block("second", R"("translate": [0.096, -0.002, 0.01])") + "]");
+    const World world(scene);
+    int found[3] = {};
+    for (const StartDefect& defect : world.start().defects) {
+        const std::string surface = surface_of(scene, defect.cloth).quoted();
+        if (!defect.is_with_body()) {
+            EXPECT_EQ(surface, "soft body \"first\"");
+            EXPECT_EQ(surface_of(scene, defect.other).quoted(), "soft body \"second\"");
+            ++found[0];
+        } else if (surface == "cloth \"patch\"") {
+            EXPECT_EQ(body_of(scene, defect.other).quoted(), "soft body \"second\"");
+            ++found[1];
+        } else {
+            EXPECT_EQ(surface, "soft body \"second\"");
+            EXPECT_EQ(body_of(scene, defect.other).quoted(), "avatar \"floor\"");
+            ++found[2];
+        }
+    }
+    EXPECT_TRUE(found[0] > 0 && found[1] > 0 && found[2] > 0);
+}
+
+TEST_F(SoftStart, RelaxesInSmallStepsToo)
+{
+    World world =
+        world_of(kFloor + R"("frames": 4, "solver": {"substeps": 32}, "cloths": [], "soft_bodies": [)" +
+                 block("jelly", R"("young": 20000, "translate": [0, -0.004, 0])") + "]");
+    world.settle();
+    const double start = mean(world.surfaces()[0].positions).y();
+    while (world.frame() < 3) {
+        world.advance_frame();
+        EXPECT_LT(mean(world.surfaces()[0].positions).y(), start + 5e-4) << world.frame();
+    }
 }
 
 TEST_F(SoftStart, LeavesHeldVerticesWhereTheyAre)
