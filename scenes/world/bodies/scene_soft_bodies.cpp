@@ -10,7 +10,7 @@
 #include "scenes/colliders/select_vertices.h"
 #include "scenes/colliders/vertex_owner.h"
 #include "scenes/surfaces/load_cloth.h"
-#include "volume/mesh/harmonic.h"
+#include "volume/energy/harmonic.h"
 
 namespace toile::scenes {
 

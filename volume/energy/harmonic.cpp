@@ -1,4 +1,4 @@
-#include "volume/mesh/harmonic.h"
+#include "volume/energy/harmonic.h"
 
 #include <Eigen/Dense>
 #include <Eigen/IterativeLinearSolvers>
