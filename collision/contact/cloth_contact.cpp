@@ -12,6 +12,15 @@ namespace {
 /// Depth of facets below a round shape, relative to the gap of the cloth [-].
 constexpr double kSagPerGap = 0.25;
 
+/// Times that a pair stops cloth in a step when its pairs are searched for again: without a term that holds
+/// it, the minimiser goes there for ever, by corrections too small for a search.
+constexpr int kAgain = 3;
+
+std::uint64_t key_of(const NearPair& pair)
+{
+    return (std::uint64_t(pair.first) << 32 | std::uint64_t(pair.second) << 1) + (pair.is_edge_edge ? 1 : 0);
+}
+
 } // namespace
 
 ClothContact::ClothContact(ContactSoup soup)
@@ -38,6 +47,7 @@ void ClothContact::begin(View<const unsigned char> fixed_cloth)
     has_limited_ = false;
     if (has_stopped_)
         std::fill(stopped_.begin(), stopped_.end(), 0);
+    times_blocked_.clear();
     has_stopped_ = false;
 }
 
@@ -46,11 +56,13 @@ void ClothContact::mark_stopped(View<const BlockedPair> blocked)
     has_limited_ = !blocked.empty();
     has_stopped_ = has_stopped_ || has_limited_;
     stops_more_ = false;
-    for (const BlockedPair& at : blocked)
+    for (const BlockedPair& at : blocked) {
+        stops_more_ = ++times_blocked_[key_of(at.pair)] == kAgain || stops_more_;
         for (const int v : at.pair.vertex) {
             stops_more_ = stops_more_ || stopped_[v] == 0;
             stopped_[v] = 1;
         }
+    }
 }
 
 std::unique_ptr<ClothContact> make_cloth_contact(View<const Triangle> triangles, View<const Vec3> positions,

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "collision/contact/contact_bodies.h"
@@ -53,7 +55,8 @@ public:
     virtual bool is_clear() const = 0;
 
     /// Limits x where cloth would cross. Searches again from there if the correction is large, a pair stops
-    /// cloth for the first time in the step or pressing pairs have slid. True if there are new pairs.
+    /// cloth for the first or third time in the step or pressing pairs have slid. True if there are new
+    /// pairs.
     virtual bool advance(StepField x, const FindSupported& find_supported) = 0;
     bool has_limited() const { return has_limited_; } ///< x in the last advance() or limit_motion()
 
@@ -87,7 +90,8 @@ protected:
     }
     /// @param blocked  pairs that limit x
     void mark_stopped(View<const BlockedPair> blocked);
-    bool stops_more() const { return stops_more_; } ///< some of the last of them are new
+    /// True if some of the last of them are new, or have stopped cloth again and again.
+    bool stops_more() const { return stops_more_; }
 
 private:
     ContactSoup soup_;
@@ -96,7 +100,8 @@ private:
     ContactBodies bodies_;
     std::vector<unsigned char> fixed_;
     bool has_limited_ = false, has_stopped_ = false, stops_more_ = false;
-    std::vector<unsigned char> stopped_; ///< [vertices of the soup]
+    std::vector<unsigned char> stopped_;                   ///< [vertices of the soup]
+    std::unordered_map<std::uint64_t, int> times_blocked_; ///< pairs of this step, by their primitives
 };
 
 /// @param triangles  [triangles] of all cloths
