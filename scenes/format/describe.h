@@ -369,7 +369,7 @@ void describe(V& v, SoftBody& s)
             "contact.friction, or the avatar's.");
     v.field("layer", s.layer, between(-100, 100),
             "Order of soft bodies: where they cross at the start, the repair moves the one with the higher "
-            "layer out of the other. Cloth is outside of all soft bodies.");
+            "layer, or the later one, out of the other. Cloth is outside of all soft bodies.");
     v.field("color", s.color, kColor, "Red, green, blue in pictures.");
 }
 
@@ -462,7 +462,7 @@ void describe(V& v, Contact& c)
     v.field("friction_pairs", c.friction_pairs, "Friction of particular pairs of materials.");
     v.field("self", c.self, "Contact of cloth with itself and other cloth. Not with xpbd and vbd.");
     v.field("repair_start", c.repair_start,
-            "Move cloth that starts inside avatars or through cloth; otherwise only report it.");
+            "Move cloth and soft bodies that start inside or through others; otherwise only report it.");
 }
 
 template <typename V>

@@ -1,7 +1,9 @@
 #include "scenes/world/start_pose.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <numeric>
 
 #include "collision/repair/repair_start.h"
 #include "core/base/error.h"
@@ -76,26 +78,81 @@ void require_fit(const Scene& scene, const collision::StartReport& report)
             " does not fit its start pose: to leave bodies and other " +
             (is_cloth ? "cloth " : "soft bodies ") + reason + "; " +
             (is_cloth ? "let the avatar begin in the pose that the cloth was made for (\"preroll\": "
-                        "{\"from_bind\": 1}, or another \"start\"), or give another \"scale\", "
+                        "{\"from_bind\": true}, or another \"start\"), or give another \"scale\", "
                         "\"translate\" or size; "
                       : "give another \"translate\" or \"scale\"; ") +
             "\"contact\": {\"repair_start\": false} leaves it as it is");
     }
 }
 
-/// Surfaces as bodies that do not move.
-std::vector<std::unique_ptr<collision::MeshCollider>>
-fixed_bodies(const std::vector<collision::StartCloth>& surfaces)
+using FixedBodies = std::vector<std::unique_ptr<collision::MeshCollider>>;
+
+std::unique_ptr<collision::MeshCollider> fixed_body(const collision::StartCloth& surface)
 {
-    std::vector<std::unique_ptr<collision::MeshCollider>> bodies;
-    bodies.reserve(surfaces.size());
-    for (const collision::StartCloth& surface : surfaces)
-        bodies.push_back(std::make_unique<collision::MeshCollider>(
-            MovingMesh{surface.triangles, surface.positions, surface.positions}));
-    return bodies;
+    return std::make_unique<collision::MeshCollider>(
+        MovingMesh{surface.triangles, surface.positions, surface.positions});
 }
 
-/// Moves the soft bodies off the avatars and each other, then cloth off them all.
+/// Adds the defects of soft bodies that lie inside later ones, which have moved off what crosses them only.
+/// @param order  in which they were repaired
+void find_enclosed(const std::vector<collision::StartCloth>& soft_bodies, const std::vector<int>& order,
+                   int avatars, const FixedBodies& fixed, collision::StartReport& report)
+{
+    for (size_t i = 0; i < order.size(); ++i) {
+        std::vector<collision::ContactCollider> later;
+        for (size_t k = i + 1; k < order.size(); ++k)
+            later.push_back({fixed[k].get(), nullptr});
+        if (later.empty())
+            continue;
+        for (collision::StartDefect& defect : check_start({soft_bodies[order[i]]}, later).defects) {
+            if (defect.kind != collision::StartDefect::Kind::InsideBody)
+                continue;
+            defect.cloth = order[i];
+            defect.other = avatars + order[i + 1 + defect.other];
+            report.defects.push_back(defect);
+        }
+    }
+}
+
+/// Moves soft bodies off the avatars and off those of lower layers, of equal layers the earlier ones.
+/// @param bodies  avatars in contact; the report numbers them, and then the soft bodies
+collision::StartReport repair_soft_bodies(std::vector<collision::StartCloth>& soft_bodies,
+                                          std::vector<collision::ContactCollider> bodies, bool may_repair,
+                                          const collision::RepairProgress& progress)
+{
+    std::vector<int> order(soft_bodies.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return soft_bodies[a].layer < soft_bodies[b].layer; });
+    const int avatars = int(bodies.size());
+    std::vector<collision::StartReport> reports(soft_bodies.size());
+    FixedBodies fixed;
+    double done = 0.0;
+    for (const int k : order) {
+        std::vector<collision::StartCloth> one{soft_bodies[k]};
+        reports[k] =
+            check_and_repair(one, bodies, may_repair,
+                             progress.part(done / double(order.size()), (done + 1.0) / double(order.size())));
+        done += 1.0;
+        for (collision::StartDefect& defect : reports[k].defects) {
+            defect.cloth = k;
+            if (!defect.is_with_body())
+                defect.other = k;
+            else if (defect.other >= avatars)
+                defect.other = avatars + order[defect.other - avatars];
+        }
+        soft_bodies[k] = std::move(one.front());
+        fixed.push_back(fixed_body(soft_bodies[k]));
+        bodies.push_back({fixed.back().get(), nullptr});
+    }
+    collision::StartReport report;
+    for (const collision::StartReport& of_body : reports)
+        report.append(of_body);
+    find_enclosed(soft_bodies, order, avatars, fixed, report);
+    return report;
+}
+
+/// Moves the soft bodies, then cloth off them all.
 /// @param bodies       avatars in contact
 /// @param soft_bodies  their surfaces
 collision::StartReport repair_bodies_then_cloth(std::vector<collision::StartCloth>& cloths,
@@ -104,9 +161,8 @@ collision::StartReport repair_bodies_then_cloth(std::vector<collision::StartClot
                                                 bool may_repair, const collision::RepairProgress& progress)
 {
     const double of_bodies = soft_bodies.empty() ? 0.0 : cloths.empty() ? 1.0 : 0.5;
-    collision::StartReport of_soft_bodies;
-    if (!soft_bodies.empty())
-        of_soft_bodies = check_and_repair(soft_bodies, bodies, may_repair, progress.part(0.0, of_bodies));
+    collision::StartReport of_soft_bodies =
+        repair_soft_bodies(soft_bodies, bodies, may_repair, progress.part(0.0, of_bodies));
     for (collision::StartDefect& defect : of_soft_bodies.defects) {
         defect.cloth += int(cloths.size());
         if (!defect.is_with_body())
@@ -114,9 +170,11 @@ collision::StartReport repair_bodies_then_cloth(std::vector<collision::StartClot
     }
     if (cloths.empty())
         return of_soft_bodies;
-    const auto fixed = fixed_bodies(soft_bodies);
-    for (const auto& body : fixed)
-        bodies.push_back({body.get(), nullptr});
+    FixedBodies fixed;
+    for (const collision::StartCloth& body : soft_bodies) {
+        fixed.push_back(fixed_body(body));
+        bodies.push_back({fixed.back().get(), nullptr});
+    }
     collision::StartReport report =
         check_and_repair(cloths, bodies, may_repair, progress.part(of_bodies, 1.0));
     report.append(of_soft_bodies);

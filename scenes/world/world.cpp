@@ -335,6 +335,11 @@ World::World(const Scene& scene, const WorldOptions& options)
     parts_->start = repair_start_pose(scene, parts_->groups, parts_->colliders, [&](double fraction) {
         parts_->tell("repair of the start pose", fraction);
     });
+    for (const ClothGroup& group : parts_->groups)
+        if (group.is_deformed() && group.has_solids() && options.warn)
+            options.warn(scene.source.string() +
+                         ": the repair of the start pose has deformed soft bodies, which spring "
+                         "back in the first steps; without solids in the scene they would relax first");
     for (ClothGroup& group : parts_->groups)
         group.tie(scene.contact.gap, parts_->colliders, options.warn);
     for (const ClothGroup& group : parts_->groups)

@@ -1,6 +1,8 @@
 #include "apps/toile/simulate/start_text.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <vector>
 
 #include "scenes/world/start_pose.h"
 
@@ -73,6 +75,19 @@ std::string line_of(const collision::StartDefect& defect, const scenes::Scene& s
            (defect.is_fixed ? ", held there" : "");
 }
 
+/// At most kMaxListed.
+std::vector<collision::StartDefect> deepest_remaining(const collision::StartReport& report)
+{
+    std::vector<collision::StartDefect> remaining;
+    for (const collision::StartDefect& defect : report.defects)
+        if (!defect.is_repaired)
+            remaining.push_back(defect);
+    std::stable_sort(remaining.begin(), remaining.end(),
+                     [](const auto& a, const auto& b) { return a.depth > b.depth; });
+    remaining.resize(std::min(remaining.size(), size_t(kMaxListed)));
+    return remaining;
+}
+
 } // namespace
 
 std::string start_text(const collision::StartReport& report, const scenes::Scene& scene)
@@ -93,10 +108,13 @@ std::string start_text(const collision::StartReport& report, const scenes::Scene
     if (const int under = report.count(Kind::UnderLayer))
         text += number_of(under, "layer", "layers") + " under a lower one; ";
     if (!report.was_repaired)
-        return text + "left as it is";
-    text += "repaired by moves of at most " + millimetres(report.max_move) + ", edges strained by " +
-            formatted("%.1f %% (RMS), ", 100.0 * report.rms_strain) +
-            formatted("%.1f %% at most", 100.0 * report.max_strain);
+        return text + (report.is_clean() ? "all of it is held, and left as it is" : "left as it is");
+    if (report.max_move == 0.0)
+        text += "no repair was found";
+    else
+        text += "repaired by moves of at most " + millimetres(report.max_move) + ", edges strained by " +
+                formatted("%.1f %% (RMS), ", 100.0 * report.rms_strain) +
+                formatted("%.1f %% at most", 100.0 * report.max_strain);
     const int crossing = report.remaining(Kind::CrossesBody) + report.remaining(Kind::Crossing);
     const int under = report.remaining(Kind::UnderLayer);
     const int left = report.remaining(Kind::InsideBody) + crossing + under;
@@ -105,10 +123,8 @@ std::string start_text(const collision::StartReport& report, const scenes::Scene
     text += "; " + number_of(report.remaining(Kind::InsideBody), "penetration", "penetrations") + " and " +
             number_of(crossing, "crossing", "crossings") +
             (under > 0 ? " and " + number_of(under, "misplaced layer", "misplaced layers") : "") + " remain:";
-    int listed = 0;
-    for (const collision::StartDefect& defect : report.defects)
-        if (!defect.is_repaired && listed++ < kMaxListed)
-            text += "\n  " + line_of(defect, scene);
+    for (const collision::StartDefect& defect : deepest_remaining(report))
+        text += "\n  " + line_of(defect, scene);
     return left > kMaxListed ? text + "\n  ... (all of them: --report)" : text;
 }
 
