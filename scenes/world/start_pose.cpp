@@ -104,6 +104,7 @@ void find_enclosed(const std::vector<collision::StartCloth>& soft_bodies, const 
             later.push_back({fixed[k].get(), nullptr});
         if (later.empty())
             continue;
+        const StageScope stage("scenes/start_check");
         for (collision::StartDefect& defect : check_start({soft_bodies[order[i]]}, later).defects) {
             if (defect.kind != collision::StartDefect::Kind::InsideBody)
                 continue;
