@@ -85,7 +85,7 @@ void require_fit(const Scene& scene, const collision::StartReport& report)
     }
 }
 
-using FixedBodies = std::vector<std::unique_ptr<collision::MeshCollider>>;
+using FixedBodies = std::vector<std::unique_ptr<collision::MeshCollider>>; ///< [soft bodies]
 
 std::unique_ptr<collision::MeshCollider> fixed_body(const collision::StartCloth& surface)
 {
@@ -101,7 +101,7 @@ void find_enclosed(const std::vector<collision::StartCloth>& soft_bodies, const 
     for (size_t i = 0; i < order.size(); ++i) {
         std::vector<collision::ContactCollider> later;
         for (size_t k = i + 1; k < order.size(); ++k)
-            later.push_back({fixed[k].get(), nullptr});
+            later.push_back({fixed[order[k]].get(), nullptr});
         if (later.empty())
             continue;
         const StageScope stage("scenes/start_check");
@@ -117,9 +117,10 @@ void find_enclosed(const std::vector<collision::StartCloth>& soft_bodies, const 
 
 /// Moves soft bodies off the avatars and off those of lower layers, of equal layers the earlier ones.
 /// @param bodies  avatars in contact; the report numbers them, and then the soft bodies
+/// @param fixed   becomes the soft bodies where they are afterwards
 collision::StartReport repair_soft_bodies(std::vector<collision::StartCloth>& soft_bodies,
                                           std::vector<collision::ContactCollider> bodies, bool may_repair,
-                                          const collision::RepairProgress& progress)
+                                          const collision::RepairProgress& progress, FixedBodies& fixed)
 {
     std::vector<int> order(soft_bodies.size());
     std::iota(order.begin(), order.end(), 0);
@@ -127,7 +128,7 @@ collision::StartReport repair_soft_bodies(std::vector<collision::StartCloth>& so
                      [&](int a, int b) { return soft_bodies[a].layer < soft_bodies[b].layer; });
     const int avatars = int(bodies.size());
     std::vector<collision::StartReport> reports(soft_bodies.size());
-    FixedBodies fixed;
+    fixed.resize(soft_bodies.size());
     double done = 0.0;
     for (const int k : order) {
         std::vector<collision::StartCloth> one{soft_bodies[k]};
@@ -143,8 +144,8 @@ collision::StartReport repair_soft_bodies(std::vector<collision::StartCloth>& so
                 defect.other = avatars + order[defect.other - avatars];
         }
         soft_bodies[k] = std::move(one.front());
-        fixed.push_back(fixed_body(soft_bodies[k]));
-        bodies.push_back({fixed.back().get(), nullptr});
+        fixed[k] = fixed_body(soft_bodies[k]);
+        bodies.push_back({fixed[k].get(), nullptr});
     }
     collision::StartReport report;
     for (const collision::StartReport& of_body : reports)
@@ -162,8 +163,9 @@ collision::StartReport repair_bodies_then_cloth(std::vector<collision::StartClot
                                                 bool may_repair, const collision::RepairProgress& progress)
 {
     const double of_bodies = soft_bodies.empty() ? 0.0 : cloths.empty() ? 1.0 : 0.5;
+    FixedBodies fixed;
     collision::StartReport of_soft_bodies =
-        repair_soft_bodies(soft_bodies, bodies, may_repair, progress.part(0.0, of_bodies));
+        repair_soft_bodies(soft_bodies, bodies, may_repair, progress.part(0.0, of_bodies), fixed);
     for (collision::StartDefect& defect : of_soft_bodies.defects) {
         defect.cloth += int(cloths.size());
         if (!defect.is_with_body())
@@ -171,11 +173,8 @@ collision::StartReport repair_bodies_then_cloth(std::vector<collision::StartClot
     }
     if (cloths.empty())
         return of_soft_bodies;
-    FixedBodies fixed;
-    for (const collision::StartCloth& body : soft_bodies) {
-        fixed.push_back(fixed_body(body));
-        bodies.push_back({fixed.back().get(), nullptr});
-    }
+    for (const auto& body : fixed)
+        bodies.push_back({body.get(), nullptr});
     collision::StartReport report =
         check_and_repair(cloths, bodies, may_repair, progress.part(of_bodies, 1.0));
     report.append(of_soft_bodies);
