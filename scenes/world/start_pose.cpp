@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <numeric>
 
@@ -93,64 +94,86 @@ std::unique_ptr<collision::MeshCollider> fixed_body(const collision::StartCloth&
         MovingMesh{surface.triangles, surface.positions, surface.positions});
 }
 
+/// Those of some soft bodies that a body is near enough to, wherever a repair may move it.
+std::vector<int> near_to(const collision::StartCloth& body, View<const int> others, const FixedBodies& fixed)
+{
+    const Bounds box = bounds(body.positions);
+    std::vector<int> near;
+    std::copy_if(others.begin(), others.end(), std::back_inserter(near), [&](int k) {
+        const Bounds& other = fixed[k]->bounds();
+        return (box.lower.array() - 2.0 * kMaxMove <= other.upper.array()).all() &&
+               (other.lower.array() - 2.0 * kMaxMove <= box.upper.array()).all();
+    });
+    return near;
+}
+
+/// These soft bodies, after other bodies.
+std::vector<collision::ContactCollider> followed_by(std::vector<collision::ContactCollider> bodies,
+                                                    View<const int> numbers, const FixedBodies& fixed)
+{
+    bodies.reserve(bodies.size() + size_t(numbers.size()));
+    for (const int k : numbers)
+        bodies.push_back({fixed[k].get(), nullptr});
+    return bodies;
+}
+
 /// Adds the defects of soft bodies that lie inside later ones, which have moved off what crosses them only.
 /// @param order  in which they were repaired
-void find_enclosed(const std::vector<collision::StartCloth>& soft_bodies, const std::vector<int>& order,
-                   int avatars, const FixedBodies& fixed, collision::StartReport& report)
+void find_enclosed(const std::vector<collision::StartCloth>& soft_bodies, View<const int> order, int avatars,
+                   const FixedBodies& fixed, collision::StartReport& report)
 {
-    for (size_t i = 0; i < order.size(); ++i) {
-        std::vector<collision::ContactCollider> later;
-        for (size_t k = i + 1; k < order.size(); ++k)
-            later.push_back({fixed[order[k]].get(), nullptr});
-        if (later.empty())
+    for (int i = 0; i < order.size(); ++i) {
+        const std::vector<int> near =
+            near_to(soft_bodies[order[i]], order.subview(i + 1, order.size() - i - 1), fixed);
+        if (near.empty())
             continue;
         const StageScope stage("scenes/start_check");
-        for (collision::StartDefect& defect : check_start({soft_bodies[order[i]]}, later).defects) {
+        for (collision::StartDefect& defect :
+             check_start({soft_bodies[order[i]]}, followed_by({}, near, fixed)).defects) {
             if (defect.kind != collision::StartDefect::Kind::InsideBody)
                 continue;
             defect.cloth = order[i];
-            defect.other = avatars + order[i + 1 + defect.other];
+            defect.other = avatars + near[defect.other];
             report.defects.push_back(defect);
         }
     }
 }
 
 /// Moves soft bodies off the avatars and off those of lower layers, of equal layers the earlier ones.
-/// @param bodies  avatars in contact; the report numbers them, and then the soft bodies
-/// @param fixed   becomes the soft bodies where they are afterwards
+/// @param avatars  in contact; the report numbers them, and then the soft bodies
+/// @param fixed    becomes the soft bodies where they are afterwards
 collision::StartReport repair_soft_bodies(std::vector<collision::StartCloth>& soft_bodies,
-                                          std::vector<collision::ContactCollider> bodies, bool may_repair,
-                                          const collision::RepairProgress& progress, FixedBodies& fixed)
+                                          const std::vector<collision::ContactCollider>& avatars,
+                                          bool may_repair, const collision::RepairProgress& progress,
+                                          FixedBodies& fixed)
 {
-    std::vector<int> order(soft_bodies.size());
+    const int count = int(soft_bodies.size()), avatar_count = int(avatars.size());
+    std::vector<int> order(count);
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return soft_bodies[a].layer < soft_bodies[b].layer; });
-    const int avatars = int(bodies.size());
-    std::vector<collision::StartReport> reports(soft_bodies.size());
-    fixed.resize(soft_bodies.size());
-    double done = 0.0;
-    for (const int k : order) {
-        std::vector<collision::StartCloth> one{soft_bodies[k]};
-        reports[k] =
-            check_and_repair(one, bodies, may_repair,
-                             progress.part(done / double(order.size()), (done + 1.0) / double(order.size())));
-        done += 1.0;
-        for (collision::StartDefect& defect : reports[k].defects) {
-            defect.cloth = k;
+    std::vector<collision::StartReport> reports(count);
+    fixed.resize(count);
+    for (int i = 0; i < count; ++i) {
+        const int body = order[i];
+        std::vector<collision::StartCloth> one{soft_bodies[body]};
+        const std::vector<int> near = near_to(one.front(), View<const int>(order).subview(0, i), fixed);
+        reports[body] = check_and_repair(one, followed_by(avatars, near, fixed), may_repair,
+                                         progress.part(double(i) / count, double(i + 1) / count));
+        for (collision::StartDefect& defect : reports[body].defects) {
+            defect.cloth = body;
             if (!defect.is_with_body())
-                defect.other = k;
-            else if (defect.other >= avatars)
-                defect.other = avatars + order[defect.other - avatars];
+                defect.other = body;
+            else if (defect.other >= avatar_count)
+                defect.other = avatar_count + near[defect.other - avatar_count];
         }
-        soft_bodies[k] = std::move(one.front());
-        fixed[k] = fixed_body(soft_bodies[k]);
-        bodies.push_back({fixed[k].get(), nullptr});
+        soft_bodies[body] = std::move(one.front());
+        fixed[body] = fixed_body(soft_bodies[body]);
     }
     collision::StartReport report;
     for (const collision::StartReport& of_body : reports)
         report.append(of_body);
-    find_enclosed(soft_bodies, order, avatars, fixed, report);
+    find_enclosed(soft_bodies, order, avatar_count, fixed, report);
     return report;
 }
 
@@ -248,7 +271,8 @@ collision::StartReport repair_start_pose(const Scene& scene, std::vector<ClothGr
                                  collision::RepairProgress(progress));
     number_by_scene(bodies, colliders, report);
     require_fit(scene, report);
-    place(cloths, soft_bodies, groups);
+    if (report.was_repaired)
+        place(cloths, soft_bodies, groups);
     using Kind = collision::StartDefect::Kind;
     if (report.remaining(Kind::Crossing) == 0 && report.remaining(Kind::CrossesBody) == 0)
         for (ClothGroup& group : groups)

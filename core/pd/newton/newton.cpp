@@ -44,8 +44,7 @@ constexpr double kKept = 0.1;
 /// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
 /// below any fixed tolerance: cloth that should begin to slide would stay where it is, step after step. The
 /// error of its acceleration is at most about kOfDriving, and vanishes with the step below kDrivingOfStep,
-/// gravity's speed in 1/120 s. kReachable is a speed that
-/// rounding leaves to be found [m/s].
+/// gravity's speed in 1/120 s. Rounding leaves no less than kReachable [m/s] to be found.
 constexpr double kOfDriving = 0.15, kDrivingOfStep = 0.04, kReachable = 1e-6;
 
 /// Small Newton steps in succession after which touching cloth has converged. The first leaves contact forces

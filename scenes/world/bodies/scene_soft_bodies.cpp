@@ -179,17 +179,25 @@ void SceneSoftBodies::set_start(View<Vec3> positions, View<Vec3> velocities, Vie
         }
 }
 
-/// [vertices] Nonzero for those of the core and of exact attachments.
-std::vector<char> SceneSoftBodies::held(const Body& body) const
+/// Visits the vertices of the core and of exact attachments that are wanted.
+template <typename IsWanted, typename Visit>
+void SceneSoftBodies::visit_held(const Body& body, const IsWanted& is_wanted, const Visit& visit)
 {
-    std::vector<char> held(body.positions.size(), 0);
     if (body.core)
         for (const int v : body.core->vertices())
-            held[v] = 1;
+            visit(v);
     for (const AttachmentConstraint& attachment : body.attachments)
-        if (!attachment.stiffness())
+        if (!attachment.stiffness() && is_wanted(attachment))
             for (const int v : attachment.vertices())
-                held[v] = 1;
+                visit(v);
+}
+
+/// [vertices] Nonzero for those that are held now or later.
+std::vector<char> SceneSoftBodies::held(const Body& body)
+{
+    std::vector<char> held(body.positions.size(), 0);
+    visit_held(
+        body, [](const AttachmentConstraint&) { return true; }, [&](int v) { held[v] = 1; });
     return held;
 }
 
@@ -239,13 +247,9 @@ void SceneSoftBodies::mark_fixed(double t_t1, View<unsigned char> fixed) const
     for (const Body& body : bodies_) {
         for (int v = 0; v < body.vertex_count(); ++v)
             fixed[body.unknown(v)] = 0;
-        if (body.core)
-            for (const int v : body.core->vertices())
-                fixed[body.unknown(v)] = 1;
-        for (const AttachmentConstraint& attachment : body.attachments)
-            if (!attachment.stiffness() && attachment.is_active_at(t_t1))
-                for (const int v : attachment.vertices())
-                    fixed[body.unknown(v)] = 1;
+        visit_held(
+            body, [&](const AttachmentConstraint& attachment) { return attachment.is_active_at(t_t1); },
+            [&](int v) { fixed[body.unknown(v)] = 1; });
     }
 }
 

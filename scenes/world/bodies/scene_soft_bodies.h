@@ -99,7 +99,9 @@ private:
     };
     void add_attachments(const Scene& scene, const std::vector<Collider>& colliders, View<const int> of_file,
                          Body& body);
-    std::vector<char> held(const Body& body) const;
+    template <typename IsWanted, typename Visit>
+    static void visit_held(const Body& body, const IsWanted& is_wanted, const Visit& visit);
+    static std::vector<char> held(const Body& body);
     static void require_one_owner(const Body& body, const std::string& core_location);
     void add_springs();
     static double mass(const Body& body);

@@ -158,6 +158,22 @@ TEST(RepairStart, BringsTheHigherLayerOutside)
     }
 }
 
+TEST(RepairStart, TakesTheOutsideOfClosedClothForThatOfALayer)
+{
+    // A ball, of which the upper part is too far from the floor for its normal to count.
+    for (const double height : {0.07, 0.08, 0.09}) {
+        std::vector<StartCloth> cloths{cloth_of(sphere_mesh(Vec3(0, height, 0), 0.04, 3), 0),
+                                       cloth_of(sheet_mesh(0.1, 20, height + 0.037), 1)};
+        const ShapeCollider floor(PlaneShape{}, Eigen::Isometry3d::Identity(), "floor");
+        const StartReport report = repair_start(cloths, {{nullptr, &floor}});
+        EXPECT_GT(report.count(Kind::Crossing), 4);
+        EXPECT_EQ(report.remaining(Kind::Crossing), 0) << height;
+        const SurfaceProximity ball(cloths[0].triangles, cloths[0].positions);
+        for (const Vec3& p : cloths[1].positions)
+            EXPECT_GT(ball.closest(p)->signed_distance, 0.0) << height;
+    }
+}
+
 TEST(RepairStart, ResolvesEqualLayers)
 {
     std::vector<StartCloth> cloths = crossing_sheets(0, 0);
