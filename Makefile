@@ -14,7 +14,7 @@ DEMO_CUDA := $(if $(filter-out 0,$(GPU)),ON,$(if $(CARD),AUTO,OFF))
 
 FUZZ_TARGETS := $(addprefix fuzz_,abc cache gltf msh obj pattern ply scene usd_frames vtk)
 # What ships; research and the tests of GPUs would double the time.
-SANITIZED_TESTS := $(addprefix test_,core quadrature2d volume garment collision avatars export garment_format scenes preview) $(FUZZ_TARGETS)
+SANITIZED_TESTS := $(addprefix test_,core quadrature2d volume garment collision avatars export garment_format scenes preview) gltf_poses $(FUZZ_TARGETS)
 
 configure = cmake --preset $(1) --log-level=WARNING --no-warn-unused-cli -DCMAKE_CUDA_ARCHITECTURES=$(ARCHITECTURES) $(2)
 
