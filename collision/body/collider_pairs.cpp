@@ -46,8 +46,11 @@ void ColliderPairs::find(const StepStart& start, View<const Vec3> from)
         found_at_.assign(from.begin(), from.end());
     max_motion_ = kMaxAdvectionSpeed * start.dt;
     const ReachVertex reach{start.prediction, found_at_, settings_.gap};
-    for (int v = 0; v < start.x.size(); ++v)
+    shape_radius_ = 0.0;
+    for (int v = 0; v < start.x.size(); ++v) {
         wanted_[v] = reach_[v] = reach(v);
+        shape_radius_ = std::max(shape_radius_, reach.of_shapes(v));
+    }
     pairs_.clear();
     search(found_at_);
 }
@@ -95,7 +98,7 @@ void ColliderPairs::search(View<const Vec3> x)
 {
     const StageScope stage("collision/detect");
     DetectSettings settings;
-    settings.radius = *std::max_element(wanted_.begin(), wanted_.end());
+    settings.radius = shape_radius_;
     settings.max_motion = max_motion_;
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;

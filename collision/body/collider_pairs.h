@@ -68,8 +68,9 @@ private:
     std::vector<ContactCollider> colliders_;
     Settings settings_;
     ContactDetector detector_;
-    ContactSideHistory sides_; ///< of moving meshes
-    double max_motion_ = 0.0;  ///< [m] maximum motion in the step of a surface that advects cloth
+    ContactSideHistory sides_;  ///< of moving meshes
+    double max_motion_ = 0.0;   ///< [m] maximum motion in the step of a surface that advects cloth
+    double shape_radius_ = 0.0; ///< [m] of searches of shapes in the step
 
     std::vector<ContactPair> pairs_;
     std::vector<Vec3> found_at_;          ///< [vertices] [m]

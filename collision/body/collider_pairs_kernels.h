@@ -12,8 +12,8 @@
 
 namespace toile::collision {
 
-/// Maximum search radius [m]. Cloth that moves further relative to a collider in one step may pass through
-/// it.
+/// Maximum search radius of meshes [m]. Cloth that moves further relative to one in a step is stopped by the
+/// collision-free step.
 inline constexpr double kMaxReach = 0.06;
 
 /// Distance [m] by which the solver may move cloth from its prediction before another search is needed.
@@ -95,8 +95,14 @@ struct ReachVertex {
 
     TOILE_HD double operator()(int v) const
     {
-        const double reach = gap + kReachMargin + (prediction[v] - found_at[v]).norm();
-        return reach < kMaxReach ? reach : kMaxReach;
+        const double whole = of_shapes(v);
+        return whole < kMaxReach ? whole : kMaxReach;
+    }
+
+    /// The same without a maximum: nothing else stops cloth at a shape.
+    TOILE_HD double of_shapes(int v) const
+    {
+        return gap + kReachMargin + (prediction[v] - found_at[v]).norm();
     }
 };
 

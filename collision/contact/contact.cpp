@@ -21,8 +21,9 @@ constexpr double kLeftOver = 1e-4;
 /// 0.1 a walking skirt takes three minimisations per step, without measurable benefit.
 constexpr double kFrictionChange = 0.5;
 
-/// Such minimisations in a step. Forces of cloth between two others may go to and fro without end.
-constexpr int kMaxLandings = 8;
+/// Such minimisations in a step, and those in which cloth is pressed out of a shape. Forces of cloth between
+/// two others may go to and fro without end.
+constexpr int kMaxLandings = 8, kMaxPresses = 8;
 
 std::unique_ptr<ContactTerms> make_terms(ContactEnergy& energy, View<const Triangle> triangles,
                                          View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
@@ -54,7 +55,7 @@ void Contact::begin_step(const StepStart& start)
 {
     dt_ = start.dt;
     has_cleared_ = is_near_ = false;
-    landings_ = 0;
+    landings_ = presses_ = 0;
     energy_.use_true_hessian(start.wants_true_hessian);
     if (between_)
         between_->begin_step(start, *terms_);
@@ -122,14 +123,17 @@ bool Contact::revise(StepField x, MinimiserProgress progress)
     const bool looks = between_ && (is_converged || !between_->is_clear());
     const bool has_new_pairs = looks && between_->advance(x, [&] { return terms_->supported(); });
     const bool is_limited = looks && between_->has_limited();
-    if (is_limited)
+    const bool has_sunk = is_converged && presses_ < kMaxPresses && friction.sunk_count > 0;
+    if (has_sunk)
+        ++presses_;
+    if (is_limited || has_sunk)
         terms_->update_multipliers(is_near_);
     if (terms_->has_left(kTrust) || has_new_pairs) {
         terms_->remember(RememberedSlip::kByStart);
         find_again();
         return true;
     }
-    return has_landed || (is_limited && friction.short_count > 0);
+    return has_landed || has_sunk || (is_limited && friction.short_count > 0);
 }
 
 /// Finds the pairs of vertices that have left theirs, and makes all terms.

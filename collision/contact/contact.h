@@ -125,6 +125,7 @@ private:
     ContactEnergy energy_;                  ///< without terms if they are on a GPU
     std::unique_ptr<ContactTerms> terms_;
     int landings_ = 0;         ///< in this step: minimisations for changed friction limits
+    int presses_ = 0;          ///< likewise: for vertices that shapes press out
     bool has_cleared_ = false; ///< in this step: pairs are newer than those stored for friction
     bool is_near_ = false;     ///< the minimum was at the last look of this step
     int active_count_ = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "collision/contact/spring.h"
 #include "collision/geometry/contact_pair.h"
@@ -44,10 +45,10 @@ struct ContactMultiplier {
 /// Contact pair with the data of its energy.
 struct ContactTerm {
     ContactPair pair;
-    double offset = 0.0;        ///< [m] gap to keep between cloth and surface
-    double min_gap = 0.0;       ///< [m] below which it gets a multiplier
-    ContactSpring spring;       ///< along the normal
-    double friction = 0.0;      ///< [-] Coulomb coefficient
+    double offset = 0.0;                                       ///< [m] gap to keep between cloth and surface
+    double min_gap = -std::numeric_limits<double>::infinity(); ///< [m] below which it gets a multiplier
+    ContactSpring spring;                                      ///< along the normal
+    double friction = 0.0;                                     ///< [-] Coulomb coefficient
     Vec3 anchor = Vec3::Zero(); ///< [m] sticking position of the cloth point, in space at t1
     double give = 0.0; ///< [m] depth below the offset at which a step may end: cloth gripped from both sides
     double normal_force = 0.0; ///< [N] lagged, bounds friction
@@ -59,6 +60,8 @@ struct ContactTerm {
 
     /// Bound of a shortfall, relative to the depth from which on the spring hardens [-].
     static constexpr double kMostPerHard = 0.4;
+
+    TOILE_HD bool has_min_gap() const { return min_gap > -std::numeric_limits<double>::infinity(); }
 
     TOILE_HD void update_multiplier(bool is_near)
     {

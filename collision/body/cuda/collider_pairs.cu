@@ -119,7 +119,8 @@ void DeviceColliderPairs::find(View<const Vec3> x, View<const Vec3> prediction, 
                      KeepReach{{prediction, found_at_.view(), settings_.gap}, reach_.view(), wanted_.view()},
                      query_bounds_);
     pairs_.resize(0);
-    search(found_at_.view(), bounds.reach, &bounds);
+    shape_radius_ = bounds.reach;
+    search(found_at_.view(), &bounds);
 }
 
 void DeviceColliderPairs::find_again(View<const Vec3> x)
@@ -138,16 +139,16 @@ void DeviceColliderPairs::find_again(View<const Vec3> x)
     parallel_for(space_, "contact/copy_kept", kept,
                  CopyListed<ContactPair>{pairs_.view(), list_.view(), kept_.view()});
     std::swap(pairs_, kept_);
-    search(x, distance, nullptr);
+    search(x, nullptr);
 }
 
 /// Appends the pairs of vertices with a wanted reach.
 /// @param bounds  of all vertices that search; null: unknown
-void DeviceColliderPairs::search(View<const Vec3> x, double radius, const QueryBounds* bounds)
+void DeviceColliderPairs::search(View<const Vec3> x, const QueryBounds* bounds)
 {
     const StageScope stage("collision/detect");
     DetectSettings settings;
-    settings.radius = radius;
+    settings.radius = shape_radius_;
     settings.max_motion = max_motion_;
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;

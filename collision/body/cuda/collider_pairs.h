@@ -78,7 +78,7 @@ private:
     };
     void follow_colliders();
     void follow_clearance(int c, View<const Vec3> x);
-    void search(View<const Vec3> x, double radius, const QueryBounds* bounds);
+    void search(View<const Vec3> x, const QueryBounds* bounds);
     void search_collider(int c, View<const Vec3> x, const QueryBounds* bounds,
                          const DetectSettings& settings);
     bool is_beyond(int c, const QueryBounds& bounds, const DetectSettings& settings) const;
@@ -92,7 +92,7 @@ private:
     DeviceContactSideHistory sides_;
     std::vector<std::unique_ptr<Mesh>> meshes_;          ///< [colliders] null for shapes
     DeviceArray<AdvectingCollider> advecting_colliders_; ///< [colliders]
-    double max_motion_ = 0.0;                            ///< see ColliderPairs [m]
+    double max_motion_ = 0.0, shape_radius_ = 0.0;       ///< see ColliderPairs [m]
     bool has_out_of_bounds_ = false;
 
     DeviceArray<ContactPair> pairs_, kept_;

@@ -12,7 +12,7 @@ namespace toile::collision {
 /// Key of pairs that are no vertex planes, above the keys of all vertices.
 inline constexpr std::uint64_t kNoVertex = ~std::uint64_t(0);
 
-/// Bounds of vertices and the maximum of their search radii, as a sum.
+/// Bounds of vertices and the maximum of their search radii of shapes, as a sum.
 struct QueryBounds {
     Vec3 lower = Vec3::Constant(std::numeric_limits<double>::max()); ///< [m]
     Vec3 upper = -lower;                                             ///< [m]
@@ -34,7 +34,7 @@ struct KeepReach {
     TOILE_HD QueryBounds operator()(int v) const
     {
         reach[v] = wanted[v] = rule(v);
-        return {rule.found_at[v], rule.found_at[v], reach[v]};
+        return {rule.found_at[v], rule.found_at[v], rule.of_shapes(v)};
     }
 };
 

@@ -20,7 +20,7 @@ struct StartBehind {
                                            diagonal = std::vector<double>(4, 100.0);
     std::vector<unsigned char> fixed = std::vector<unsigned char>(4, 0);
 
-    ContactTerm term_of(ContactKind kind, const PinchedTerm& pinched = {}) const
+    ContactTerm term_of(ContactKind kind, const PinchedTerm& pinched = {}, double clearance = 1.0) const
     {
         ContactRules rules;
         rules.cloth_of = cloth_of;
@@ -42,7 +42,7 @@ struct StartBehind {
             pair.vertex = {0, 1, 2, 3};
             pair.weight = {1.0, -1.0 / 3.0, -1.0 / 3.0, -1.0 / 3.0};
         }
-        return rules.term_of(pair, 1.0, pinched);
+        return rules.term_of(pair, clearance, pinched);
     }
 };
 
@@ -57,6 +57,16 @@ TEST(ContactRules, ClothPressesClothThoughItsPlaneLeavesTheStartBehind)
     const ContactTerm cloth = StartBehind().term_of(ContactKind::kClothVertexFace);
     EXPECT_DOUBLE_EQ(cloth.offset, kKeep);
     EXPECT_DOUBLE_EQ(cloth.min_gap, kMinGap * kKeep);
+}
+
+TEST(ContactRules, ClothGoesNoDeeperIntoAShapeUnlessAnotherSqueezesIt)
+{
+    EXPECT_DOUBLE_EQ(StartBehind().term_of(ContactKind::kVertexShape).min_gap, -0.012);
+    EXPECT_FALSE(StartBehind().term_of(ContactKind::kVertexShape, {}, -1e-3).has_min_gap());
+    StartBehind above;
+    above.x[0].z() = 0.01;
+    EXPECT_DOUBLE_EQ(above.term_of(ContactKind::kVertexShape).min_gap, kMinGap * kKeep);
+    EXPECT_FALSE(above.term_of(ContactKind::kVertexFace).has_min_gap());
 }
 
 TEST(ContactRules, ClothThatABodyPassesThroughComesOutSlowly)

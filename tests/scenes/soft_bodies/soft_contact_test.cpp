@@ -52,6 +52,39 @@ TEST_F(SoftContact, SlidesAtCoulombsAcceleration)
     EXPECT_NEAR(slide(0.7), exact, 0.05 * exact);
 }
 
+/// 4 and 8 m/s are 67 and 133 mm in the longest step.
+TEST_F(SoftContact, StaysAboveTheFloorThatItIsThrownOnto)
+{
+    for (const char* const speed : {"4", "8"}) {
+        World world =
+            world_of(R"("frames": 7, "fps": 30, "cloths": [], )" + kFloor + R"("soft_bodies": [)" +
+                     block("jelly", R"("young": 20000, "translate": [0, 0.35, 0], "velocity": [0, -)" +
+                                        std::string(speed) + ", 0]") +
+                     "]");
+        double nearest = INFINITY;
+        while (world.frame() + 1 < world.frame_count()) {
+            ASSERT_EQ(world.advance_frame().status, StepReport::Status::Converged) << speed;
+            nearest = std::min(nearest, lowest(world.surfaces()[0].positions));
+        }
+        EXPECT_GT(nearest, 0.0) << speed;
+        EXPECT_LT(nearest, 0.003) << speed;
+    }
+}
+
+/// A weight of 200 kPa, in short steps: what a step loses the next ones do not get back by themselves.
+TEST_F(SoftContact, DoesNotSinkIntoTheFloorStepByStep)
+{
+    World world = world_of(
+        R"("frames": 101, "fps": 1920, "gravity": [0, -1000, 0], "cloths": [],
+        "solver": {"substeps": 1}, )" +
+        kFloor + R"("soft_bodies": [)" +
+        block("jelly", R"("young": 1e6, "density": 2000, "damping": 100, "translate": [0, 0.002, 0])") + "]");
+    while (world.frame() + 1 < world.frame_count()) {
+        ASSERT_EQ(world.advance_frame().status, StepReport::Status::Converged) << world.frame();
+        ASSERT_GT(lowest(world.surfaces()[0].positions), 0.0) << world.frame();
+    }
+}
+
 TEST_F(SoftContact, KeepsABodyOutOfItself)
 {
     // A clamp: two bars of 2 cm, the upper one held at one end by the back, so soft that it folds onto the
