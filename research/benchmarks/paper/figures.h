@@ -26,7 +26,7 @@ std::vector<Curve> rule_curves(const Effort& effort);
 std::vector<Curve> contact_curves(const Effort& effort);
 
 /// Figure 12: steps of a bar, and of a sheet that drapes over a ball, by local/global iterations around each
-/// global solver. Errors are distances to the converged step.
+/// global solver, by JGS2 and by Toile's Newton's method. Errors are distances to the converged step.
 ///
 /// Loops: "plain" takes full steps; "line search" backtracks; "l-bfgs" is Toile's L-BFGS.
 std::vector<Curve> step_curves(const Effort& effort);

@@ -28,8 +28,10 @@ def read(path):
 
 def draw_panel(ax, curves, figure, part):
     problem = next(key[1] for key in curves if key[0] == figure and part in key[1])
-    chosen = {key[2]: points for key, points in curves.items()
-              if key[:2] == (figure, problem) and key[3] == LOOPS[figure]}
+    of_problem = {key[2:]: points for key, points in curves.items() if key[:2] == (figure, problem)}
+    # Methods that replace the loop have none but their line search.
+    chosen = {method: points for (method, loop), points in of_problem.items()
+              if loop == LOOPS[figure] or (method, LOOPS[figure]) not in of_problem}
     # The paper's rule appears with the denominators that serve it better.
     chosen = {method: points for method, points in chosen.items() if method + DENOMINATORS not in chosen}
     for i, (method, points) in enumerate(chosen.items()):
