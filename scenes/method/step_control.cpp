@@ -14,7 +14,7 @@ namespace {
 constexpr double kSmall = 0.1;
 
 /// Shortest step [ticks], and error relative to the allowed one [-] from which on there are shorter ones:
-/// cloth in a storm moves by whole edges in the shortest.
+/// cloth in a storm moves by whole edges in the shortest. Longer ones with that error are refused.
 constexpr int kShortest = 4;
 constexpr double kGross = 10.0;
 
@@ -45,6 +45,11 @@ int StepControl::choose(int begin, const std::function<double(int ticks)>& motio
     while (begin % chosen_ != 0 || (chosen_ > kShortest && motion(chosen_) > 1.0))
         chosen_ /= 2;
     return chosen_;
+}
+
+double StepControl::max_error() const
+{
+    return error_ > 0.0 && chosen_ > kShortest ? kGross * error_ : kAnyStepError;
 }
 
 void StepControl::observe(const StepReport& step)

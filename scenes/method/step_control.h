@@ -10,7 +10,8 @@ namespace toile::scenes {
 ///
 /// All lengths are ticks times a power of two, and a step of n ticks begins at a multiple of n ticks. A step
 /// chosen by what moves is halved while its estimated error exceeds the one allowed, doubled while it is a
-/// tenth of that, and shortened where bodies are fast.
+/// tenth of that, and shortened where bodies are fast. One whose error is ten times the one allowed, such as
+/// that in which something falls to the floor, is made again, unless it is short already.
 class StepControl {
 public:
     /// Longest step by what moves [s]. A sample is divided evenly, so it is an upper bound.
@@ -37,7 +38,10 @@ public:
     /// @return its length [ticks]
     int choose(int begin, const std::function<double(int ticks)>& motion);
 
-    /// Learns from a step that choose() chose.
+    /// RMS error [m] from which on the step that choose() chose is better made again, shorter.
+    double max_error() const;
+
+    /// Learns from a step that choose() chose, taken or refused.
     void observe(const StepReport& step);
 
 private:

@@ -121,7 +121,7 @@ void ClothGroup::prepare(double dt, double t_t1)
     body_->prepare(dt, fixed_);
 }
 
-StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>& colliders)
+StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>& colliders, double max_error)
 {
     if (is_asleep(t_t1, colliders)) {
         StepReport report;
@@ -145,7 +145,10 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
     if (is_relaxing_)
         std::fill(acceleration_.begin(), acceleration_.end(), Vec3::Zero());
     begin_solids(dt);
+    body_->refuse_steps_beyond(max_error);
     StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), limits_.get());
+    if (report.refused > 0)
+        return report;
     may_cross_ =
         may_cross_ || (contact_ && (contact_->stuck_count() > 0 || contact_->let_through_count() > 0 ||
                                     have_cores_jumped)); // flesh has gone where nobody looked
@@ -249,7 +252,7 @@ StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>
     const std::vector<Vec3> start = is_deformed_ ? surfaces() : std::vector<Vec3>();
     body_->set_velocities(std::vector<Vec3>(velocities.size(), Vec3::Zero()));
     is_relaxing_ = true;
-    StepReport report = step(dt, t_t1, colliders);
+    StepReport report = step(dt, t_t1, colliders, kAnyStepError);
     is_relaxing_ = false;
     forget_rest(); // it is not that of a body with weight
     body_->set_velocities(velocities);

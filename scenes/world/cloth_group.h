@@ -53,7 +53,8 @@ public:
     void prepare(double dt, double t_t1);
 
     /// Takes one time step of dt [s] that ends at time t_t1 [s]. Colliders are already advanced to it.
-    StepReport step(double dt, double t_t1, const std::vector<Collider>& colliders);
+    /// @param max_error  [m] see PointMasses::refuse_steps_beyond
+    StepReport step(double dt, double t_t1, const std::vector<Collider>& colliders, double max_error);
 
     /// True if cloth is strained beyond its limit.
     bool is_strained() const;

@@ -104,8 +104,13 @@ struct World::Parts {
                     largest = std::max(largest, collider.motion_to(std::max(time_after(more), 0.0)));
                 return largest;
             });
-            const StepReport report = step(length * control.tick(), time_after(length));
+            StepReport report = step(length * control.tick(), time_after(length), control.max_error());
             control.observe(report);
+            if (report.refused > 0) {
+                report.step_error = 0.0; // of no step
+                total.merge(report);
+                continue;
+            }
             done += length;
             tell({total.steps + 1, 0, double(done) / ticks});
             total.energy = 0.0;
@@ -233,16 +238,22 @@ struct World::Parts {
     }
 
     /// Takes a step of dt [s] that ends at t [s].
-    StepReport step(double dt, double t)
+    /// @param max_error  [m] beyond which it is refused. Where avatars move or groups do not wait for each
+    /// other
+    ///                   it is not, since these do not go back.
+    StepReport step(double dt, double t, double max_error)
     {
         const StageScope stage("scenes/step");
         Cancellation::check();
-        for (Collider& collider : colliders)
+        bool can_go_back = groups.size() == 1;
+        for (Collider& collider : colliders) {
             collider.advance_to(std::max(t, 0.0));
+            can_go_back = can_go_back && !collider.moved();
+        }
         StepReport report;
         for (ClothGroup& group : groups)
-            report.merge(group.step(dt, t, colliders));
-        report.steps = 1;
+            report.merge(group.step(dt, t, colliders, can_go_back ? max_error : kAnyStepError));
+        report.steps = report.refused > 0 ? 0 : 1;
         return report;
     }
 

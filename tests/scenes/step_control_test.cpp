@@ -77,6 +77,23 @@ TEST(StepControl, TakesStepsOfATickWhereTheErrorIsGross)
     EXPECT_EQ(lengths, (std::vector<int>{1, 1, 2, 4, 8}));
 }
 
+TEST(StepControl, RefusesGrossErrorsOfStepsThatAreNotShortYet)
+{
+    StepControl control = StepControl::by_motion(1.0 / 60.0, 1e-4);
+    EXPECT_EQ(control.choose(0, kStill), 16);
+    EXPECT_DOUBLE_EQ(control.max_error(), 1e-3);
+    StepReport refused = with_error(2e-3);
+    refused.refused = 1;
+    control.observe(refused);
+    EXPECT_EQ(control.choose(0, kStill), 8);
+    control.observe(refused);
+    EXPECT_EQ(control.choose(0, kStill), 4);
+    EXPECT_EQ(control.max_error(), kAnyStepError);
+    StepControl fixed = StepControl::fixed(1.0 / 30.0, 3);
+    fixed.choose(0, kStill);
+    EXPECT_EQ(fixed.max_error(), kAnyStepError);
+}
+
 TEST(StepControl, NoStepIsLongerThanASixtiethOfASecond)
 {
     for (const double fps : {12.0, 24.0, 25.0, 30.0, 60.0, 120.0}) {
@@ -115,7 +132,9 @@ TEST(StepControl, FreeFallTakesTheLongestSteps)
     World world(scene_of(R"("frames": 10, "air": {"density": 0}, )" + kSheet));
     EXPECT_GT(world.advance_frame().steps, 2) << "the first step is of first order";
     world.advance_frame();
-    EXPECT_EQ(world.advance_frame().steps, 2);
+    const StepReport report = world.advance_frame();
+    EXPECT_EQ(report.steps, 2);
+    EXPECT_EQ(report.refused, 0);
     EXPECT_EQ(world.stages().calls("linear/factor"), 0) << "no global solver";
 }
 

@@ -42,6 +42,7 @@ Json json_of(int frame, const StepReport& report, double seconds)
                  {"status", to_word(report.status)},
                  {"seconds", seconds},
                  {"steps", report.steps},
+                 {"refused", report.refused},
                  {"iterations", report.iterations},
                  {"linear_iterations", report.linear_iterations},
                  {"displacement_m", report.displacement},

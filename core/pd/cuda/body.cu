@@ -43,7 +43,8 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       fixed_targets_on_host_(space, "body/fixed_targets_on_host"),
       x_previous_(space, "body/x_previous", x_.size()), v_previous_(space, "body/v_previous", x_.size()),
       restart_(space, "body/restart", x_.size()), touched_(space, "body/touched", x_.size()),
-      touches_(space, "body/touches", x_.size()), minimiser_(space, "body/minimiser", x_.size()),
+      touches_(space, "body/touches", x_.size()), restart_before_(space, "body/restart_before", x_.size()),
+      error_sums_(space), minimiser_(space, "body/minimiser", x_.size()),
       inertia_(space, "body/inertia", x_.size()), found_(space, "body/found", x_.size()),
       masses_(space, "body/masses"), diagonal_(space, "body/diagonal"),
       inverse_masses_(space, "body/inverse_masses"), fixed_(space, "body/fixed"),
@@ -109,7 +110,7 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
                             View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
     const StageScope stage("pd/device_step");
-    return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
+    return take_step(*this, {dt, acceleration, fixed, targets, active, projection, max_error_},
                      {settings_.max_iterations, settings_.max_passes,
                       newton_ ? settings_.speed_tolerance : 0.0, settings_.begins_by_local_global},
                      patience_);
@@ -122,6 +123,9 @@ void DeviceBody::begin(const StepInput& input)
     if (input.active && input.active->on_device(space_) == nullptr)
         throw InvalidInput("this contact does not run on a GPU");
     scheme_ = Bdf2::make(settings_.integrator, input.dt, previous_dt_);
+    if (std::isfinite(input.max_error))
+        parallel_for(space_, "pd/keep_restart", restart_.size(),
+                     CopyRestart{restart_.view(), restart_before_.view()});
     if (previous_dt_ == 0.0 || input.dt > Bdf2::kMaxRatio * previous_dt_)
         restart_all();
     prepare(input.dt, input.fixed);

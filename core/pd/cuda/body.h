@@ -81,7 +81,10 @@ private:
     OuterLoop::Outcome minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
                                           bool is_calm) override;
     void restart_touching(const StepInput& input) override;
-    void finish(ActiveSetEnergy* active, StepProjection* projection) override;
+    void mark_touching(ActiveSetEnergy& active) override;
+    double error() override;
+    void abandon() override;
+    void finish(StepProjection* projection) override;
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
     void end(StepProjection* projection, StepReport& report) override;
 
@@ -129,6 +132,8 @@ private:
     double previous_dt_ = 0.0; ///< [s] 0: there was no step before
     DeviceArray<Vec3> x_previous_, v_previous_;
     DeviceArray<unsigned char> restart_, touched_, touches_;
+    DeviceArray<unsigned char> restart_before_; ///< restart_ before the step
+    SumScratch<StepErrorSum> error_sums_;
     DeviceArray<Vec3> minimiser_; ///< [vertices] [m]
     DeviceArray<double> inertia_; ///< [vertices] [N/m]
 

@@ -118,10 +118,27 @@ void DeviceBody::predict_motion()
                       begin_sums_);
 }
 
-void DeviceBody::finish(ActiveSetEnergy* active, StepProjection*)
+void DeviceBody::mark_touching(ActiveSetEnergy& active)
 {
-    if (active && settings_.integrator != Integrator::ImplicitEuler)
-        active->mark_touching(x_t1_, touches_.view());
+    if (settings_.integrator != Integrator::ImplicitEuler)
+        active.mark_touching(x_t1_, touches_.view());
+}
+
+double DeviceBody::error()
+{
+    return parallel_sum(space_, "pd/error", x_.size(), StepErrorSum{},
+                        MotionError{scheme_, motion(), x_t1_.device(), previous_dt_ == 0.0}, error_sums_)
+        .rms();
+}
+
+void DeviceBody::abandon()
+{
+    parallel_for(space_, "pd/abandon", restart_.size(), CopyRestart{restart_before_.view(), restart_.view()});
+    touches_.fill_zero();
+}
+
+void DeviceBody::finish(StepProjection*)
+{
     for (const auto& energy : energies_.all())
         energy->end_minimisation(x_t1_.device());
     parallel_sum(space_, "pd/finish", x_.size(), FinishSums{},

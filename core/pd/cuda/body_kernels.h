@@ -106,6 +106,13 @@ struct CopyPositions {
     TOILE_HD void operator()(int i) const { to[i] = x[i]; }
 };
 
+/// Copies which vertices restart.
+struct CopyRestart {
+    View<const unsigned char> restart;
+    View<unsigned char> to;
+    TOILE_HD void operator()(int i) const { to[i] = restart[i]; }
+};
+
 /// Saves the result of a descent, or restores it: positions [m] and gradient [N], [vertices].
 struct CopyFound {
     View<const Vec3> x, gradient;

@@ -122,22 +122,36 @@ struct RestartTouching {
     }
 };
 
-/// Velocity at the end of a step. Vertices that have begun to touch took part in an impact.
-struct FinishMotion {
+/// Local error of a step that ends at x_t1, of free vertices that nothing has hit.
+struct MotionError {
     Bdf2 scheme;
     MotionView motion;
     View<const Vec3> x_t1; ///< [vertices] [m]
     bool is_first;         ///< of the body: every vertex begins its motion
 
-    /// @return local error, of a free vertex that nothing has hit
     TOILE_HD StepErrorSum operator()(int i) const
     {
         const bool is_hit = motion.has_begun_to_touch(i) || (motion.restart[i] != 0 && !is_first);
+        if (is_hit || motion.fixed[i] != 0)
+            return {};
+        const Bdf2 s = motion.scheme_of(i, scheme);
+        return {s.error_of(x_t1[i], motion.x[i], motion.v[i], motion.v_previous[i]).squaredNorm(), 1.0};
+    }
+};
+
+/// Velocity at the end of a step. Vertices that have begun to touch took part in an impact.
+struct FinishMotion {
+    Bdf2 scheme;
+    MotionView motion;
+    View<const Vec3> x_t1; ///< [vertices] [m]
+    bool is_first;         ///< see MotionError
+
+    /// @return MotionError
+    TOILE_HD StepErrorSum operator()(int i) const
+    {
+        const StepErrorSum error = MotionError{scheme, motion, x_t1, is_first}(i);
         RestartTouching{motion}(i);
         const Bdf2 s = motion.scheme_of(i, scheme);
-        StepErrorSum error;
-        if (!is_hit && motion.fixed[i] == 0)
-            error = {s.error_of(x_t1[i], motion.x[i], motion.v[i], motion.v_previous[i]).squaredNorm(), 1.0};
         motion.v_previous[i] = motion.v[i];
         motion.v[i] = (x_t1[i] - s.a0 * motion.x[i] + s.a1 * motion.x_previous[i]) / s.implicit_step();
         return error;

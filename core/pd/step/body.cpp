@@ -27,7 +27,7 @@ Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings
 StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                       View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
-    return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
+    return take_step(*this, {dt, acceleration, fixed, targets, active, projection, max_error_},
                      {settings_.max_iterations, settings_.max_passes,
                       newton_ ? settings_.speed_tolerance : 0.0, settings_.begins_by_local_global},
                      patience_);
@@ -50,6 +50,7 @@ MotionView Body::motion()
 void Body::begin(const StepInput& input)
 {
     dt_ = input.dt;
+    restart_before_ = restart_;
     if (previous_dt_ == 0.0 || dt_ > Bdf2::kMaxRatio * previous_dt_)
         std::fill(restart_.begin(), restart_.end(), 1);
     scheme_ = Bdf2::make(settings_.integrator, dt_, previous_dt_);
@@ -150,10 +151,27 @@ OuterLoop::Outcome Body::minimise_by_newton(const Newton::Settings& settings, co
     return Newton::minimise(*newton_, settings, revise, is_calm);
 }
 
-void Body::finish(ActiveSetEnergy* active, StepProjection* projection)
+void Body::mark_touching(ActiveSetEnergy& active)
 {
-    if (active && settings_.integrator != Integrator::ImplicitEuler)
-        active->mark_touching(x_t1_, touches_);
+    if (settings_.integrator != Integrator::ImplicitEuler)
+        active.mark_touching(x_t1_, touches_);
+}
+
+double Body::error()
+{
+    return parallel_sum(kCpu, int(x_.size()), StepErrorSum{},
+                        MotionError{scheme_, motion(), x_t1_, previous_dt_ == 0.0})
+        .rms();
+}
+
+void Body::abandon()
+{
+    restart_ = restart_before_;
+    std::fill(touches_.begin(), touches_.end(), 0);
+}
+
+void Body::finish(StepProjection* projection)
+{
     error_ = parallel_sum(kCpu, int(x_.size()), StepErrorSum{},
                           FinishMotion{scheme_, motion(), x_t1_, previous_dt_ == 0.0});
     minimiser_ = x_t1_;

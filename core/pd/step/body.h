@@ -56,7 +56,10 @@ private:
     OuterLoop::Outcome minimise(ActiveSetEnergy* active, int max_iterations, bool is_first) override;
     OuterLoop::Outcome minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
                                           bool is_calm) override;
-    void finish(ActiveSetEnergy* active, StepProjection* projection) override;
+    void mark_touching(ActiveSetEnergy& active) override;
+    double error() override;
+    void abandon() override;
+    void finish(StepProjection* projection) override;
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
     void end(StepProjection* projection, StepReport& report) override;
 
@@ -80,9 +83,10 @@ private:
     double previous_dt_ = 0.0; ///< [s] 0: there was no step before
     std::vector<Vec3> x_previous_, v_previous_;
     std::vector<unsigned char> restart_, touched_, touches_;
-    std::vector<Vec3> minimiser_; ///< [vertices] [m]
-    std::vector<double> inertia_; ///< [vertices] [N/m]
-    StepErrorSum error_;          ///< of the current step
+    std::vector<unsigned char> restart_before_; ///< restart_ before the step
+    std::vector<Vec3> minimiser_;               ///< [vertices] [m]
+    std::vector<double> inertia_;               ///< [vertices] [N/m]
+    StepErrorSum error_;                        ///< of the current step
 };
 
 } // namespace toile

@@ -35,6 +35,11 @@ public:
                             View<const Vec3> targets, ActiveSetEnergy* active,
                             StepProjection* projection) = 0;
 
+    /// Sets the RMS local error [m] of the time integration beyond which step() leaves everything as it was,
+    /// and says so (StepReport::refused). By default, and for methods without an estimate, no step is
+    /// refused.
+    void refuse_steps_beyond(double error) { max_error_ = error; }
+
     // Current positions [m] and velocities [m/s] of the vertices; views are valid until the next change.
     virtual View<const Vec3> positions() const = 0;
     virtual View<const Vec3> velocities() const = 0;
@@ -51,6 +56,9 @@ public:
 
     /// [vertices] [kg], positive
     virtual View<const double> masses() const = 0;
+
+protected:
+    double max_error_ = kAnyStepError; ///< see refuse_steps_beyond()
 };
 
 /// Point masses on the CPU.

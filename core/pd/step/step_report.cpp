@@ -14,6 +14,7 @@ void StepReport::merge(const StepReport& other)
 {
     status = std::max(status, other.status);
     steps += other.steps;
+    refused += other.refused;
     unfinished += other.unfinished;
     iterations += other.iterations;
     linear_iterations += other.linear_iterations;

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 namespace toile {
+
+/// Largest error of a step [m] where none is refused.
+inline constexpr double kAnyStepError = std::numeric_limits<double>::infinity();
 
 /// Outcome of one or several time steps. Numerical problems are reported here, never thrown.
 struct StepReport {
@@ -25,6 +29,7 @@ struct StepReport {
 
     Status status = Status::Converged;
     int steps = 0;
+    int refused = 0;            ///< beside these, steps that were not taken: their error was too large
     int unfinished = 0;         ///< of these, steps that ended at the iteration limit
     int iterations = 0;         ///< outer iterations, summed over steps
     int linear_iterations = 0;  ///< PCG iterations inside them, summed

@@ -17,6 +17,7 @@ struct StepInput {
     View<const Vec3> targets;                ///< [vertices] read where fixed [m]
     ActiveSetEnergy* active = nullptr;       ///< contact; may be null
     StepProjection* projection = nullptr;    ///< may be null
+    double max_error = kAnyStepError;        ///< [m] see PointMasses::refuse_steps_beyond
 };
 
 /// Parts of a step, on the machine that holds the fields of the body: the CPU (Body) or a GPU (DeviceBody).
@@ -46,8 +47,17 @@ public:
     virtual OuterLoop::Outcome minimise_by_newton(const Newton::Settings& settings,
                                                   const Newton::Revise& revise, bool is_calm) = 0;
 
+    /// Marks what touches at the end positions.
+    virtual void mark_touching(ActiveSetEnergy& active) = 0;
+
+    /// RMS local error of the time integration [m]. After mark_touching(), as finish().
+    virtual double error() = 0;
+
+    /// Goes back to before begin().
+    virtual void abandon() = 0;
+
     /// Computes the velocities of the minimiser, and shows it to all that observe it.
-    virtual void finish(ActiveSetEnergy* active, StepProjection* projection) = 0;
+    virtual void finish(StepProjection* projection) = 0;
 
     /// Moves the end positions onto the constraint. The displacement becomes velocity, like that of any
     /// force.

@@ -24,6 +24,17 @@ void add(StepReport& report, const OuterLoop::Outcome& outcome)
     }
 }
 
+/// Report on a step that is not taken.
+StepReport refused(const StepReport& tried, double error)
+{
+    StepReport report;
+    report.refused = 1;
+    report.iterations = tried.iterations;
+    report.linear_iterations = tried.linear_iterations;
+    report.step_error = error;
+    return report;
+}
+
 void minimise(StepSpace& space, ActiveSetEnergy* active, const StepLimits& limits, StepReport& report)
 {
     StepPasses passes(limits.max_iterations, limits.max_passes);
@@ -104,7 +115,14 @@ StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits&
     if (report.status == StepReport::Status::NonFinite)
         return report;
 
-    space.finish(input.active, input.projection);
+    if (input.active)
+        space.mark_touching(*input.active);
+    if (std::isfinite(input.max_error))
+        if (const double error = space.error(); error > input.max_error) {
+            space.abandon();
+            return refused(report, error);
+        }
+    space.finish(input.projection);
     const bool stands = limits.speed_tolerance > 0.0 && (!input.active || input.active->is_complete());
     correct(space, input, stands);
     if (input.active)

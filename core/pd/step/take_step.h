@@ -21,7 +21,8 @@ struct StepLimits {
 inline constexpr int kMaxCorrections = 8;
 
 /// Advances a body by one step: prediction, minimisations with a search for contact after each, and the
-/// corrections of what they do not guarantee. A step whose energy is not finite leaves the body unchanged.
+/// corrections of what they do not guarantee. A step whose energy is not finite, or whose error is too large,
+/// leaves the body unchanged.
 /// @param patience  of the body, from step to step
 StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits& limits,
                      Newton::Patience& patience);

@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/pd/step/body.h"
+
 namespace toile::test {
 
 namespace {
@@ -47,7 +49,14 @@ public:
         return outcome;
     }
     void restart_touching(const StepInput&) override { calls.push_back("restart touching"); }
-    void finish(ActiveSetEnergy*, StepProjection*) override { calls.push_back("finish"); }
+    void mark_touching(ActiveSetEnergy&) override { calls.push_back("mark touching"); }
+    double error() override
+    {
+        calls.push_back("error");
+        return 2e-3;
+    }
+    void abandon() override { calls.push_back("abandon"); }
+    void finish(StepProjection*) override { calls.push_back("finish"); }
     void project(StepProjection&, const std::function<bool()>&) override { calls.push_back("project"); }
     void end(StepProjection*, StepReport&) override { calls.push_back("end"); }
 
@@ -75,13 +84,13 @@ public:
     void observe(View<const Vec3>) override {}
     void project(View<Vec3>, View<const double>, const std::function<bool()>&) override {}
 
-    StepReport step(bool in_contact, bool is_limited)
+    StepReport step(bool in_contact, bool is_limited, double max_error = kAnyStepError)
     {
         const std::vector<unsigned char> fixed;
         Newton::Patience patience;
-        return take_step(*this,
-                         {0.1, {}, fixed, {}, in_contact ? this : nullptr, is_limited ? this : nullptr},
-                         {50, 3}, patience);
+        return take_step(
+            *this, {0.1, {}, fixed, {}, in_contact ? this : nullptr, is_limited ? this : nullptr, max_error},
+            {50, 3}, patience);
     }
 
 private:
@@ -119,8 +128,8 @@ TEST(TakeStep, MinimisesAgainAfterNewContactAndCorrectsUntilNothingMoves)
     const StepReport report = step.step(true, true);
     EXPECT_THAT(step.calls,
                 ElementsAre("begin", "find contact", "restart touching", "minimise first", "revise",
-                            "minimise", "revise", "finish", "clear", "project", "keep apart", "clear",
-                            "project", "keep apart", "end contact", "end"));
+                            "minimise", "revise", "mark touching", "finish", "clear", "project", "keep apart",
+                            "clear", "project", "keep apart", "end contact", "end"));
     EXPECT_EQ(report.iterations, 4);
 }
 
@@ -132,8 +141,9 @@ TEST(TakeStep, LooksForContactInsideOneMinimisationByNewton)
     Newton::Patience patience;
     limits.speed_tolerance = 0.01;
     StepReport report = take_step(step, {0.1, {}, fixed, {}, &step, nullptr}, limits, patience);
-    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "restart touching", "newton", "revise",
-                                        "finish", "clear", "keep apart", "end contact", "end"));
+    EXPECT_THAT(step.calls,
+                ElementsAre("begin", "find contact", "restart touching", "newton", "revise", "mark touching",
+                            "finish", "clear", "keep apart", "end contact", "end"));
     EXPECT_EQ(report.speed, 0.01);
 
     step.calls.clear();
@@ -148,6 +158,59 @@ TEST(TakeStep, BoundsTheNumberOfCorrections)
     step.moves_left = 1000;
     step.step(true, false);
     EXPECT_EQ(std::count(step.calls.begin(), step.calls.end(), "keep apart"), kMaxCorrections);
+}
+
+TEST(TakeStep, IsAbandonedWhereItsErrorIsTooLarge)
+{
+    NotedStep step;
+    const StepReport report = step.step(true, true, 1e-3);
+    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "restart touching", "minimise first",
+                                        "revise", "mark touching", "error", "abandon"));
+    EXPECT_EQ(report.refused, 1);
+    EXPECT_EQ(report.steps, 0);
+    EXPECT_EQ(report.iterations, 2);
+    EXPECT_EQ(report.step_error, 2e-3);
+
+    step.calls.clear();
+    EXPECT_EQ(step.step(false, false, 3e-3).refused, 0);
+    EXPECT_THAT(step.calls, ElementsAre("begin", "minimise first", "error", "finish", "end"));
+}
+
+/// A body that has refused a step goes on as if it had not been tried.
+TEST(TakeStep, LeavesNoTraceWhereItIsRefused)
+{
+    const int n = 3;
+    const std::vector<unsigned char> fixed{0, 1, 0};
+    const std::vector<Vec3> start(n, Vec3::Zero()), targets(n, Vec3(0.0, 0.1, 0.0));
+    const auto moved = [&](bool tries) {
+        Body::Settings settings;
+        settings.integrator = Integrator::Bdf2;
+        settings.outer = OuterMethod::Newton;
+        Body body(
+            start,
+            std::make_unique<System>(std::vector<double>(n, 0.1), std::vector<std::shared_ptr<Energy>>()),
+            settings);
+        const auto step = [&](double dt, double pull) {
+            return body.step(dt, std::vector<Vec3>(n, Vec3(0.0, 0.0, pull)), fixed, targets, nullptr,
+                             nullptr);
+        };
+        EXPECT_EQ(step(0.01, 1.0).refused, 0);
+        EXPECT_EQ(step(0.01, 1.0).refused, 0);
+        if (tries) {
+            const std::vector<Vec3> x(body.positions().begin(), body.positions().end());
+            body.refuse_steps_beyond(1e-6);
+            const StepReport report = step(0.01, 100.0);
+            EXPECT_EQ(report.refused, 1);
+            EXPECT_EQ(report.steps, 0);
+            EXPECT_GT(report.step_error, 1e-6);
+            EXPECT_EQ(std::vector<Vec3>(body.positions().begin(), body.positions().end()), x);
+            body.refuse_steps_beyond(kAnyStepError);
+        }
+        EXPECT_EQ(step(0.005, 100.0).refused, 0);
+        EXPECT_EQ(step(0.005, 100.0).refused, 0);
+        return std::vector<Vec3>(body.positions().begin(), body.positions().end());
+    };
+    EXPECT_EQ(moved(true), moved(false));
 }
 
 TEST(TakeStep, LeavesTheBodyUnchangedIfTheEnergyIsNotFinite)

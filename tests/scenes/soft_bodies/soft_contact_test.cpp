@@ -71,6 +71,26 @@ TEST_F(SoftContact, StaysAboveTheFloorThatItIsThrownOnto)
     }
 }
 
+/// A block thrown onto a floor bounces as high as in steps of 1/1920 s: 0.42 m above where it landed, in 0.17
+/// s.
+TEST_F(SoftContact, BouncesAsHighAsInShortSteps)
+{
+    const auto height = [&](const std::string& solver, int* refused) {
+        World world = world_of(
+            R"("frames": 9, "fps": 30, "cloths": [], )" + solver + kFloor + R"("soft_bodies": [)" +
+            block("jelly", R"("young": 20000, "translate": [0, 0.35, 0], "velocity": [0, -4, 0])") + "]");
+        while (world.frame() + 1 < world.frame_count())
+            *refused += world.advance_frame().refused;
+        return mean(world.surfaces()[0].positions).y();
+    };
+    int refused = 0, refused_of_equal_steps = 0;
+    const double exact = height(R"("solver": {"substeps": 64}, )", &refused_of_equal_steps);
+    EXPECT_EQ(refused_of_equal_steps, 0);
+    EXPECT_NEAR(height("", &refused), exact, 0.03); // 0.15 too low where the step of the impact is kept
+    EXPECT_GT(refused, 0);
+    EXPECT_LT(refused, 10);
+}
+
 /// A weight of 200 kPa, in short steps: what a step loses the next ones do not get back by themselves.
 TEST_F(SoftContact, DoesNotSinkIntoTheFloorStepByStep)
 {
