@@ -71,8 +71,7 @@ TEST_F(SoftContact, StaysAboveTheFloorThatItIsThrownOnto)
     }
 }
 
-/// A block thrown onto a floor bounces as high as in steps of 1/1920 s: 0.42 m above where it landed, in 0.17
-/// s.
+/// A block thrown onto a floor bounces as high as in steps of 1/1920 s.
 TEST_F(SoftContact, BouncesAsHighAsInShortSteps)
 {
     const auto height = [&](const std::string& solver, int* refused) {
