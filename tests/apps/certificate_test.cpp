@@ -293,7 +293,7 @@ TEST(Simulate, ChecksItsOutputAtTheEnd)
     const Finished run = run_toile(simulate, folder.path());
     EXPECT_EQ(run.exit_code, 1);
     EXPECT_EQ(run.error_lines(), 1) << run.errors;
-    for (const char* part : {"first bad frame 0", "cloth-cloth crossings", "certificate.json"})
+    for (const char* part : {"first bad frame 0", " crossings, the first of \"", "certificate.json"})
         EXPECT_NE(run.errors.find(part), std::string::npos) << run.errors;
     EXPECT_EQ(run.output, "./lower.pc2\n./upper.pc2\n./certificate.json\n");
     EXPECT_EQ(json_in(folder, "certificate.json")["first_bad_frame"], 0);

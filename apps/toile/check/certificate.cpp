@@ -33,13 +33,13 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
     if (found.torn > 0)
         add(std::to_string(found.torn) + " vertices have left the ones that they are joined to");
     if (found.cloth_cloth_crossings > 0)
-        add(std::to_string(found.cloth_cloth_crossings) + " cloth-cloth crossings");
+        add(std::to_string(found.cloth_cloth_crossings) + " crossings");
     if (found.cloth_avatar_crossings > 0)
-        add(std::to_string(found.cloth_avatar_crossings) + " cloth-avatar crossings");
+        add(std::to_string(found.cloth_avatar_crossings) + " crossings with avatars");
     if (found.crossing) {
-        const FrameFindings::Side& body = found.crossing->b;
-        add("the first " + near_text(found.crossing->point) +
-            (body.bone.empty() ? "" : ", by \"" + body.bone + "\" of \"" + body.name + "\""));
+        const auto& [frame, a, b, point] = *found.crossing;
+        add("the first of \"" + a.name + "\" with " + (b.name == a.name ? "itself" : "\"" + b.name + "\"") + " " +
+            near_text(point) + (b.bone.empty() ? "" : ", by \"" + b.bone + "\""));
     }
     if (found.passage)
         add(std::to_string(found.passages) +
