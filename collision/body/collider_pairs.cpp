@@ -49,7 +49,7 @@ void ColliderPairs::find(const StepStart& start, View<const Vec3> from)
     shape_radius_ = 0.0;
     for (int v = 0; v < start.x.size(); ++v) {
         wanted_[v] = reach_[v] = reach(v);
-        shape_radius_ = std::max(shape_radius_, reach.of_shapes(v));
+        shape_radius_ = std::max(shape_radius_, reach.shape_reach(v));
     }
     pairs_.clear();
     search(found_at_);
@@ -99,6 +99,7 @@ void ColliderPairs::search(View<const Vec3> x)
     const StageScope stage("collision/detect");
     DetectSettings settings;
     settings.radius = shape_radius_;
+    settings.max_mesh_radius = kMaxReach;
     settings.max_motion = max_motion_;
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;

@@ -95,12 +95,12 @@ struct ReachVertex {
 
     TOILE_HD double operator()(int v) const
     {
-        const double whole = of_shapes(v);
+        const double whole = shape_reach(v);
         return whole < kMaxReach ? whole : kMaxReach;
     }
 
     /// The same without a maximum: nothing else stops cloth at a shape.
-    TOILE_HD double of_shapes(int v) const
+    TOILE_HD double shape_reach(int v) const
     {
         return gap + kReachMargin + (prediction[v] - found_at[v]).norm();
     }

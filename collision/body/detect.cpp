@@ -50,7 +50,7 @@ Clearance& ContactDetector::clearance_of(const MeshCollider& mesh, int collider)
 void ContactDetector::detect(const MeshCollider& mesh, int collider, const DetectSettings& settings,
                              std::vector<ContactPair>& out, const ContactSideHistory* sides)
 {
-    if (are_apart(bounds_, mesh.bounds(), std::max(settings.radius, settings.max_depth)))
+    if (are_apart(bounds_, mesh.bounds(), std::max(settings.mesh_radius(), settings.max_depth)))
         return;
     const PairSearch search{x_, reach_, mesh, collider, settings, sides, clearance_of(mesh, collider)};
     find_vertex_face(search, out);

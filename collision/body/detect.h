@@ -14,6 +14,10 @@ struct DetectSettings {
     /// of cloth between two detections, or contacts start late.
     double radius = 0.01;
 
+    /// [m] Maximum radius of meshes, whose search takes longer the larger it is.
+    double max_mesh_radius = std::numeric_limits<double>::infinity();
+    double mesh_radius() const { return radius < max_mesh_radius ? radius : max_mesh_radius; } ///< [m]
+
     /// [m] Maximum depth inside a mesh from which cloth vertices are pushed out to the nearest surface.
     /// Deeper ones are ignored: they more likely belong to the other side of a limb. Shapes have no such
     /// limit.

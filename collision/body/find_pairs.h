@@ -24,7 +24,8 @@ struct PairSearch {
     template <typename... Vertices>
     double radius_of(Vertices... v) const
     {
-        return reach.empty() ? settings.radius : std::min(settings.radius, std::max({reach[v]...}));
+        return reach.empty() ? settings.mesh_radius()
+                             : std::min(settings.mesh_radius(), std::max({reach[v]...}));
     }
 };
 

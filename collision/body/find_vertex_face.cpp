@@ -45,7 +45,7 @@ void find_planes(const PairSearch& search, int v, int& hint, std::vector<Contact
 
 void find_vertex_face(const PairSearch& search, std::vector<ContactPair>& out)
 {
-    const double reach = std::max(search.settings.radius, search.settings.max_depth);
+    const double reach = std::max(search.settings.mesh_radius(), search.settings.max_depth);
     parallel_append(
         kCpu, "collision/vertex_face", search.x.size(),
         [&](int begin, int end, std::vector<ContactPair>& pairs) {

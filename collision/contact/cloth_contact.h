@@ -70,6 +70,9 @@ public:
     /// Updates the deviation of the cloth from its prediction.
     virtual void end_step(StepField x) = 0;
 
+    /// Goes back to before begin_step().
+    virtual void abandon_step() = 0;
+
     /// Discards the state of earlier steps, for cloth that was moved elsewhere.
     virtual void forget();
 

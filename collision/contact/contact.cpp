@@ -112,9 +112,9 @@ bool Contact::revise(StepField x, MinimiserProgress progress)
     if (terms_->empty() && !between_)
         return false;
     terms_->see(x);
-    const FrictionLimits friction = terms_->update_forces();
+    const TermSums sums = terms_->update_forces();
     const bool has_landed =
-        is_converged && landings_ < kMaxLandings && friction.change > kFrictionChange * friction.total;
+        is_converged && landings_ < kMaxLandings && sums.change > kFrictionChange * sums.total;
     if (has_landed) {
         terms_->adopt_forces();
         ++landings_;
@@ -123,7 +123,7 @@ bool Contact::revise(StepField x, MinimiserProgress progress)
     const bool looks = between_ && (is_converged || !between_->is_clear());
     const bool has_new_pairs = looks && between_->advance(x, [&] { return terms_->supported(); });
     const bool is_limited = looks && between_->has_limited();
-    const bool has_sunk = is_converged && presses_ < kMaxPresses && friction.sunk_count > 0;
+    const bool has_sunk = is_converged && presses_ < kMaxPresses && sums.sunk_count > 0;
     if (has_sunk)
         ++presses_;
     if (is_limited || has_sunk)
@@ -133,7 +133,7 @@ bool Contact::revise(StepField x, MinimiserProgress progress)
         find_again();
         return true;
     }
-    return has_landed || has_sunk || (is_limited && friction.short_count > 0);
+    return has_landed || has_sunk || (is_limited && sums.short_count > 0);
 }
 
 /// Finds the pairs of vertices that have left theirs, and makes all terms.
@@ -160,6 +160,13 @@ void Contact::end_step(StepField x)
     min_gap_ = terms_->end_step();
     if (between_)
         between_->end_step(x);
+}
+
+void Contact::abandon_step()
+{
+    terms_->abandon_step();
+    if (between_)
+        between_->abandon_step();
 }
 
 /// Searches at the current positions, and moves cloth out of colliders that it is still inside. This

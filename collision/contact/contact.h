@@ -61,6 +61,7 @@ public:
     bool is_complete() const override { return true; }
     bool keep_apart(StepField x, StepField v) override;
     void end_step(StepField x) override;
+    void abandon_step() override;
 
     bool keeps_cloth_apart() const { return between_ != nullptr; }
     /// Surfaces that cloth is kept from crossing; null if there are none.

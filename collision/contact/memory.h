@@ -66,7 +66,7 @@ struct ContactRecord {
 };
 
 /// Warm start of a new term by the records that have its key: forces and slip of the first with nearly its
-/// normal, and the multiplier of the same pair, or else the largest.
+/// normal, and the multiplier of the same pair, or else the largest, for a term that has one.
 struct WarmStart {
     ContactTerm& term;
     ContactRecord key = ContactRecord::of(term.pair);
@@ -79,7 +79,8 @@ struct WarmStart {
             return;
         const bool is_same =
             record.face[0] == key.face[0] && record.face[1] == key.face[1] && record.face[2] == key.face[2];
-        if (!is_known || (!is_same_pair && (is_same || record.multiplier.shift > term.multiplier.shift))) {
+        if (term.has_min_gap() &&
+            (!is_known || (!is_same_pair && (is_same || record.multiplier.shift > term.multiplier.shift)))) {
             term.multiplier = record.multiplier;
             term.spring.shift = record.multiplier.shift;
         }

@@ -29,9 +29,9 @@ inline constexpr double kRampPerGap = 0.6, kHardPerGap = 0.7;
 /// Gap below which a pair that may not cross gets a larger force, relative to the gap to keep [-].
 inline constexpr double kMinGap = 0.2;
 
-/// Shortfall that is left, relative to the minimum gap [-], and the same of a shape, relative to the depth
-/// from which on its spring hardens.
-inline constexpr double kShort = 0.4, kSunk = kShort * kMinGap / kHardPerGap;
+/// Shortfall that is left [-]: of pairs that may not cross relative to their minimum gap, of vertices on
+/// shapes relative to the gap to keep.
+inline constexpr double kShort = 0.4, kSunk = 0.08;
 
 /// Half of the clearance between two planes of a vertex [m], negative if body parts overlap.
 /// @param x  [vertices] positions at which the planes were found [m]
@@ -156,8 +156,7 @@ struct ContactRules {
         term.offset = recovered < keep ? recovered : keep;
         if (pair.kind >= ContactKind::kGuard)
             term.min_gap = std::max(0.0, std::min(kMinGap * keep, term.offset));
-        else if (pair.kind == ContactKind::kVertexShape &&
-                 clearance >= 0.0) // no collision-free step stops it
+        else if (pair.kind == ContactKind::kVertexShape && clearance >= 0.0)
             term.min_gap = std::min(kMinGap * keep, gap_at_start < 0.0 ? gap_at_start : term.offset);
         if (clearance < 0.0 && clearance + keep < term.offset) {
             term.offset = clearance + keep;
@@ -170,10 +169,10 @@ struct ContactRules {
 
 /// Sums over terms: friction limits [N], their changes, and the numbers of those that lack some of their
 /// minimum gap: pairs that may not cross, and vertices on a shape.
-struct FrictionLimits {
+struct TermSums {
     double total = 0.0, change = 0.0;
     int short_count = 0, sunk_count = 0;
-    TOILE_HD FrictionLimits& operator+=(const FrictionLimits& other)
+    TOILE_HD TermSums& operator+=(const TermSums& other)
     {
         total += other.total;
         change += other.change;
@@ -188,21 +187,21 @@ struct FrictionLimits {
 struct UpdateForce {
     View<ContactTerm> terms;
     View<const Vec3> x; ///< [vertices] [m]
-    TOILE_HD FrictionLimits operator()(int i) const
+    TOILE_HD TermSums operator()(int i) const
     {
         ContactTerm& term = terms[i];
         term.pressing = term.pressing_force(x);
-        FrictionLimits limits{term.friction * term.pressing,
-                              term.friction * std::abs(term.pressing - term.normal_force)};
+        TermSums sums{term.friction * term.pressing,
+                      term.friction * std::abs(term.pressing - term.normal_force)};
         if (!term.has_min_gap())
-            return limits;
+            return sums;
         const double shortfall = term.min_gap - term.pair.gap(x);
         term.multiplier.shortfall = shortfall;
         if (term.pair.kind >= ContactKind::kGuard)
-            limits.short_count = shortfall > kShort * term.min_gap ? 1 : 0;
+            sums.short_count = shortfall > kShort * term.min_gap ? 1 : 0;
         else
-            limits.sunk_count = shortfall > kSunk * term.spring.hard ? 1 : 0;
-        return limits;
+            sums.sunk_count = kHardPerGap * shortfall > kSunk * term.spring.hard ? 1 : 0;
+        return sums;
     }
 };
 

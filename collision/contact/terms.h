@@ -47,7 +47,7 @@ public:
     virtual void see(StepField x) = 0;
 
     /// Updates how hard the terms press. Returns the sums of friction's limits by that.
-    virtual FrictionLimits update_forces() = 0;
+    virtual TermSums update_forces() = 0;
 
     /// Bounds friction by the updated forces.
     virtual void adopt_forces() = 0;
@@ -87,6 +87,9 @@ public:
 
     /// Updates the contact side history. Returns the smallest distance of a pair [m]; 0 if there is none.
     virtual double end_step() = 0;
+
+    /// Stores again what was stored at the start of the step.
+    virtual void abandon_step() = 0;
 
     /// Discards the state of earlier steps.
     virtual void forget() = 0;

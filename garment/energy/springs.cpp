@@ -8,12 +8,14 @@ Springs::Springs(const std::vector<Spring>& springs)
 {
     for (const Spring& spring : springs)
         springs_.push_back({spring.vertex, spring.stiffness});
+    for (const Spring& spring : springs)
+        stiffness_.push_back(spring.stiffness);
 }
 
 void Springs::add_hessian(Triplets& H) const
 {
-    for (const AnchorSpring& spring : springs_)
-        H.emplace_back(spring.vertex, spring.vertex, spring.stiffness);
+    for (size_t i = 0; i < springs_.size(); ++i)
+        H.emplace_back(springs_[i].vertex, springs_[i].vertex, stiffness_[i]);
 }
 
 double Springs::add_gradient(View<const Vec3> x, View<Vec3> gradient)

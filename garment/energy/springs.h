@@ -26,8 +26,12 @@ public:
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
     bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
-    /// Moves the target of a spring [m].
-    void set_target(int spring, const Vec3& target) { springs_[spring].target = target; }
+    /// Holds a vertex at a target [m].
+    void hold(int spring, const Vec3& target)
+    {
+        springs_[spring].target = target;
+        springs_[spring].stiffness = stiffness_[spring];
+    }
 
     /// Releases a vertex. H keeps the spring's contribution, which is still a valid bound.
     void release(int spring) { springs_[spring].stiffness = 0.0; }
@@ -37,6 +41,7 @@ public:
 
 private:
     std::vector<AnchorSpring> springs_;
+    std::vector<double> stiffness_; ///< [springs] of those that hold [N/m]
 };
 
 } // namespace toile::garment

@@ -32,9 +32,11 @@ void Tacks::begin_step(double t_t1, View<const Vec3> x)
 {
     for (int i = 0; i < int(closings_.size()); ++i) {
         Closing& closing = closings_[size_t(i)];
-        if (!closing.has_begun(t_t1))
+        if (!closing.has_begun(t_t1)) { // or a step that had begun it was not taken
+            threads_->set_length(i, std::numeric_limits<double>::infinity());
             continue;
-        if (std::isinf(threads_->length(i))) {
+        }
+        if (std::isinf(threads_->length(i)) || t_t1 < closing.start) {
             const auto& [a, b] = threads_->threads()[size_t(i)];
             closing.start = t_t1;
             closing.gap = (x[a] - x[b]).norm();

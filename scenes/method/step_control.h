@@ -38,7 +38,8 @@ public:
     /// @return its length [ticks]
     int choose(int begin, const std::function<double(int ticks)>& motion);
 
-    /// RMS error [m] from which on the step that choose() chose is better made again, shorter.
+    /// RMS error [m] from which on the step that choose() chose is better made again, shorter; kAnyStepError:
+    /// none.
     double max_error() const;
 
     /// Learns from a step that choose() chose, taken or refused.

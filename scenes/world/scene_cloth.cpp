@@ -355,7 +355,7 @@ void SceneCloth::update_targets(double t_t1, const std::vector<Collider>& collid
         attachment.follow(t_t1, colliders);
         parallel_for(kCpu, "scenes/attachment_targets", count, [&](int k) {
             if (attachment.stiffness())
-                springs_->set_target(spring + k, attachment.target(k));
+                springs_->hold(spring + k, attachment.target(k));
             else
                 targets[attachment.vertices()[k]] = attachment.target(k);
         });

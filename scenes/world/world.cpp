@@ -237,10 +237,8 @@ struct World::Parts {
         return total;
     }
 
-    /// Takes a step of dt [s] that ends at t [s].
-    /// @param max_error  [m] beyond which it is refused. Where avatars move or groups do not wait for each
-    /// other
-    ///                   it is not, since these do not go back.
+    /// Takes a step of dt [s] that ends at t [s]. Its error may be at most max_error [m], except where
+    /// avatars move or there are several groups: these do not go back.
     StepReport step(double dt, double t, double max_error)
     {
         const StageScope stage("scenes/step");

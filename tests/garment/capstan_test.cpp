@@ -175,7 +175,7 @@ private:
     void step(double ratio)
     {
         for (int j = 0; j < 4; ++j)
-            springs_->set_target(j, ends_[j] + kFar * (j < 2 ? Vec3(-tangent(0.0)) : ratio * tangent(wrap_)));
+            springs_->hold(j, ends_[j] + kFar * (j < 2 ? Vec3(-tangent(0.0)) : ratio * tangent(wrap_)));
         const View<const Vec3> x = body_->positions();
         const std::vector<Vec3> nothing(x.size(), Vec3::Zero()), here(x.begin(), x.end());
         std::vector<unsigned char> fixed(x.size(), 1);

@@ -12,9 +12,9 @@ namespace {
 Springs three_springs()
 {
     Springs springs({{0, 2.0}, {2, 5.0}, {0, 3.0}});
-    springs.set_target(0, Vec3(1, 0, 0));
-    springs.set_target(1, Vec3(0, 1, 0));
-    springs.set_target(2, Vec3(0, 0, 1));
+    springs.hold(0, Vec3(1, 0, 0));
+    springs.hold(1, Vec3(0, 1, 0));
+    springs.hold(2, Vec3(0, 0, 1));
     return springs;
 }
 
@@ -43,10 +43,21 @@ TEST(Springs, AddTheirStiffnessToTheDiagonal)
 TEST(Springs, FollowTheirTargets)
 {
     Springs springs = three_springs();
-    springs.set_target(1, kPositions[2]);
+    springs.hold(1, kPositions[2]);
     std::vector<Vec3> gradient(3, Vec3::Zero());
     springs.add_gradient(kPositions, gradient);
     EXPECT_EQ(gradient[2], Vec3(0, 0, 0));
+}
+
+TEST(Springs, HoldAgainWhatTheyHaveReleased)
+{
+    Springs springs = three_springs(), held = three_springs();
+    springs.release(1);
+    for (Springs* const some : {&springs, &held})
+        some->hold(1, Vec3(0, 0, 3));
+    std::vector<Vec3> gradient(3, Vec3::Zero()), expected = gradient;
+    EXPECT_EQ(springs.add_gradient(kPositions, gradient), held.add_gradient(kPositions, expected));
+    EXPECT_EQ(gradient, expected);
 }
 
 TEST(Springs, LetGoWhenReleasedAndStillBoundTheirHessian)

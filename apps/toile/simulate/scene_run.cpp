@@ -194,6 +194,7 @@ SceneRun::Outcome SceneRun::run_frames(RunFiles& files, RunReport& report)
         if (step.status == StepReport::Status::NonFinite)
             return {"failed", step.message};
         inverted_.push_back(world_.inverted_tets());
+        unmet.add_inverted(frame, job_.scene.soft_bodies, inverted_.back());
         frames_->update(frame + 1, note_of(step));
     }
     files.complete();

@@ -7,9 +7,11 @@ namespace {
 const char* const kYielded = "cloth is stretched beyond its limit";
 const char* const kPulled = "attachments stretch the cloth between them beyond its limit";
 const char* const kDisplaced = "contact keeps exactly held vertices off their targets";
-const char* const kPinched = "there is no room for cloth between body parts, which pass through it";
+const char* const kPinched =
+    "body parts leave no room for what is between them, or are too fast for it, and pass through";
 const char* const kStuck = "cloth crosses a body";
 const char* const kUnfinished = "steps ended unfinished";
+const char* const kInverted = "tetrahedra are inside out: their body is crushed";
 
 std::string at(const StepReport::Findings& findings)
 {
@@ -43,6 +45,15 @@ void Unmet::add(int frame, const StepReport& report)
     add(unfinished_, frame, report.unfinished > 0, {}, kUnfinished);
 }
 
+void Unmet::add_inverted(int frame, const std::vector<scene::SoftBody>& bodies,
+                         const std::vector<int>& counts)
+{
+    StepReport::Findings worst;
+    for (size_t i = 0; i < counts.size(); ++i)
+        worst.merge({counts[i], "\"" + bodies[i].name + "\""});
+    add(inverted_, frame, worst.count > 0, worst, kInverted);
+}
+
 void Unmet::sum_up(int frames) const
 {
     const auto say = [&](const Kind& kind, const std::string& text, const std::string& things) {
@@ -61,6 +72,7 @@ void Unmet::sum_up(int frames) const
     say(displaced_, kDisplaced, "vertices");
     say(pulled_, kPulled, "triangles");
     say(unfinished_, kUnfinished, "");
+    say(inverted_, kInverted, "tetrahedra");
 }
 
 } // namespace toile::app

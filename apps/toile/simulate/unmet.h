@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "apps/toile/terminal/run_log.h"
 #include "core/pd/step/step_report.h"
+#include "scenes/format/scene.h"
 
 namespace toile::app {
 
@@ -14,6 +16,10 @@ public:
     explicit Unmet(const RunLog& log) : log_(log) {}
 
     void add(int frame, const StepReport& report);
+
+    /// @param counts  [soft bodies] World::inverted_tets()
+    void add_inverted(int frame, const std::vector<scene::SoftBody>& bodies,
+                      const std::vector<int>& counts);
 
     /// Prints a line for each kind of shortfall.
     void sum_up(int frames) const;
@@ -27,7 +33,7 @@ private:
              const std::string& text);
 
     const RunLog& log_;
-    Kind yielded_, pulled_, displaced_, pinched_, stuck_, unfinished_;
+    Kind yielded_, pulled_, displaced_, pinched_, stuck_, unfinished_, inverted_;
 };
 
 } // namespace toile::app

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "collision/body/clearance_kernels.h"
+#include "core/compute/copy_items.h"
 #include "core/compute/cuda/grown_array.h"
 #include "core/compute/cuda/parallel.cuh"
 
@@ -149,6 +150,7 @@ void DeviceColliderPairs::search(View<const Vec3> x, const QueryBounds* bounds)
     const StageScope stage("collision/detect");
     DetectSettings settings;
     settings.radius = shape_radius_;
+    settings.max_mesh_radius = kMaxReach;
     settings.max_motion = max_motion_;
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;
@@ -195,7 +197,7 @@ bool DeviceColliderPairs::is_beyond(int c, const QueryBounds& bounds, const Dete
         return shape->closest(middle).signed_distance > half.norm() + settings.radius + kRounding;
     const Bounds& box = meshes_[c]->box;
     const Vec3 apart = (box.lower - bounds.upper).cwiseMax(bounds.lower - box.upper).cwiseMax(0.0);
-    return apart.norm() > std::max(settings.radius, settings.max_depth) + kRounding;
+    return apart.norm() > std::max(settings.mesh_radius(), settings.max_depth) + kRounding;
 }
 
 void DeviceColliderPairs::append(View<const ContactPair> found)

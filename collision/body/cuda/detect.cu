@@ -142,8 +142,14 @@ bool DeviceContactDetector::complete()
 
 DeviceSearch DeviceContactDetector::search_of(const DeviceMeshCollider& mesh, int collider) const
 {
-    return {x_,       reach_,           mesh.search(),       mesh.x_t0(),
-            collider, settings_.radius, settings_.max_depth, settings_.max_motion};
+    return {x_,
+            reach_,
+            mesh.search(),
+            mesh.x_t0(),
+            collider,
+            settings_.mesh_radius(),
+            settings_.max_depth,
+            settings_.max_motion};
 }
 
 View<int> DeviceContactDetector::nearest_of(int collider)

@@ -34,7 +34,7 @@ struct KeepReach {
     TOILE_HD QueryBounds operator()(int v) const
     {
         reach[v] = wanted[v] = rule(v);
-        return {rule.found_at[v], rule.found_at[v], rule.of_shapes(v)};
+        return {rule.found_at[v], rule.found_at[v], rule.shape_reach(v)};
     }
 };
 
@@ -84,14 +84,6 @@ struct CopyListed {
     View<const int> list;
     View<T> to;
     TOILE_HD void operator()(int i) const { to[i] = from[list[i]]; }
-};
-
-/// Copies all items.
-template <typename T>
-struct CopyItems {
-    View<const T> from;
-    View<T> to;
-    TOILE_HD void operator()(int i) const { to[i] = from[i]; }
 };
 
 /// Planes of single vertices, grouped by vertex in the order of the pairs.

@@ -20,6 +20,7 @@ HostClothContact::HostClothContact(ContactSoup given)
 void HostClothContact::begin_step(const StepStart& start, NearbyBodies& near)
 {
     begin(start.fixed);
+    slack_of_start_ = slack_;
     prediction_ = start.prediction;
     std::copy(start.x.begin(), start.x.end(), base_.begin());
     if (bodies().needs_begin())

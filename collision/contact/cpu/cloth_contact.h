@@ -18,6 +18,7 @@ public:
     bool advance(StepField x, const FindSupported& find_supported) override;
     bool limit_motion(StepField x, StepField v, double dt, const FindSupported& find_supported) override;
     void end_step(StepField x) override;
+    void abandon_step() override { slack_ = slack_of_start_; }
     void forget() override;
 
 private:
@@ -26,7 +27,8 @@ private:
     void search_from_end(bool goes_on);
     bool has_slid() const;
 
-    std::vector<double> slack_; ///< [vertices] see CollisionFreeStep [m]
+    std::vector<double> slack_;          ///< [vertices] see CollisionFreeStep [m]
+    std::vector<double> slack_of_start_; ///< [vertices] at the start of the step [m]
     NearPairs near_;
     CollisionFreeStep free_step_;
     CpuCcdSearch ccd_search_;

@@ -26,6 +26,7 @@ HostContactTerms::HostContactTerms(ContactEnergy& energy, View<const Triangle> t
 
 void HostContactTerms::begin_step(const StepStart& start, View<const Vec3> carried)
 {
+    has_remembered_ = false;
     rules_ = rules_of(start, settings_);
     rules_.cloth_of = tables_.cloth_of;
     rules_.gap = tables_.gap;
@@ -95,9 +96,9 @@ void HostContactTerms::make(const ClothContact* between)
     energy_.set_terms(std::move(terms), rules_.x.size());
 }
 
-FrictionLimits HostContactTerms::update_forces()
+TermSums HostContactTerms::update_forces()
 {
-    FrictionLimits sum;
+    TermSums sum;
     const UpdateForce query{energy_.change_terms(), x_};
     for (int i = 0; i < query.terms.size(); ++i)
         sum += query(i);
@@ -195,6 +196,9 @@ void HostContactTerms::project_friction(StepField v)
 
 void HostContactTerms::remember(Slip slip)
 {
+    if (!has_remembered_)
+        std::swap(memory_, memory_of_start_);
+    has_remembered_ = true;
     memory_.forget();
     for (const ContactTerm& term : energy_.terms())
         memory_.keep(term, rules_.slip_of(term, slip, x_));
@@ -211,9 +215,17 @@ double HostContactTerms::end_step()
     return min_gap;
 }
 
+void HostContactTerms::abandon_step()
+{
+    if (has_remembered_)
+        std::swap(memory_, memory_of_start_);
+    has_remembered_ = false;
+}
+
 void HostContactTerms::forget()
 {
     memory_.forget();
+    memory_of_start_.forget();
     colliders_.forget();
 }
 

@@ -28,7 +28,7 @@ public:
         seen_ = x;
         x_ = x.host();
     }
-    FrictionLimits update_forces() override;
+    TermSums update_forces() override;
     void adopt_forces() override;
     void update_multipliers(bool is_near) override;
     void mark_touching(View<unsigned char> touches) override;
@@ -43,6 +43,7 @@ public:
     void remember(Slip slip) override;
     int remembered() const override { return memory_.size(); }
     double end_step() override;
+    void abandon_step() override;
     void forget() override;
 
 private:
@@ -60,8 +61,9 @@ private:
     StepField seen_{View<Vec3>()};
     View<const Vec3> x_; ///< of seen_
     std::vector<unsigned char>
-        out_of_bounds_; ///< [vertices] 1: its pairs with colliders are to be found again
-    ContactMemory memory_;
+        out_of_bounds_;                      ///< [vertices] 1: its pairs with colliders are to be found again
+    ContactMemory memory_, memory_of_start_; ///< the latter if has_remembered_
+    bool has_remembered_ = false;            ///< in this step
 };
 
 } // namespace toile::collision

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/geometry/surface_edges.h"
+#include "core/compute/copy_items.h"
 #include "core/compute/cuda/parallel.cuh"
 #include "core/pd/cuda/body_kernels.h"
 
@@ -16,6 +17,7 @@ DeviceClothContact::DeviceClothContact(const CudaSpace& space, ContactSoup soup)
 DeviceClothContact::DeviceClothContact(const CudaSpace& space, ContactSoup given, const SurfaceEdges& edges)
     : ClothContact(std::move(given)), space_(space), half_thickness_(space, "cloth_contact/half_thickness"),
       slack_(space, "cloth_contact/slack", soup().vertex_count()),
+      slack_of_start_(space, "cloth_contact/slack_of_start", soup().vertex_count()),
       deviation_(space, "cloth_contact/deviation", soup().first_body), base_(space, "cloth_contact/base"),
       motion_(space, "cloth_contact/motion", soup().vertex_count()),
       expected_(space, "cloth_contact/expected", soup().vertex_count()), end_(space, "cloth_contact/end"),
@@ -69,9 +71,11 @@ void DeviceClothContact::begin_step(const StepStart& start, NearbyBodies& near)
     TOILE_ASSERT(start.device.x.size() == cloth);
     near_.abandon(); // of a step that an error has aborted
     begin(start.fixed);
+    parallel_for(space_, "collision/keep_slack", slack_.size(),
+                 CopyItems<double>{slack_.view(), slack_of_start_.view()});
     prediction_ = start.device.prediction;
     parallel_for(space_, "collision/keep_base", cloth,
-                 CopyPositions{start.device.x, soup().of_cloth(base_.view())});
+                 CopyItems<Vec3>{start.device.x, soup().of_cloth(base_.view())});
     if (bodies().needs_begin())
         begin_bodies(start, near);
     parallel_for(space_, "collision/expect", cloth,
@@ -86,7 +90,7 @@ void DeviceClothContact::begin_bodies(const StepStart& start, NearbyBodies& near
     const View<Vec3> base = host_base_.view();
     base_.download(base);
     parallel_for(space_, "collision/keep_prediction", prediction_.size(),
-                 CopyPositions{prediction_, soup().of_cloth(expected_.view())});
+                 CopyItems<Vec3>{prediction_, soup().of_cloth(expected_.view())});
     expected_.download_first(host_prediction_.view());
     space_.synchronise();
     StepStart on_host = start;
@@ -185,7 +189,7 @@ View<const Vec3> DeviceClothContact::with_bodies(View<const Vec3> x)
 {
     if (!soup().has_bodies())
         return x;
-    parallel_for(space_, "collision/with_bodies", x.size(), CopyPositions{x, soup().of_cloth(end_.view())});
+    parallel_for(space_, "collision/with_bodies", x.size(), CopyItems<Vec3>{x, soup().of_cloth(end_.view())});
     return end_.view();
 }
 
@@ -301,7 +305,7 @@ void DeviceClothContact::search_from(View<const Vec3> x, bool was_limited, bool 
     parallel_for(space_, "collision/expect_remaining", x.size(),
                  ExpectRemaining{x, was_limited ? View<const Vec3>(wanted_.view()) : x, goes_on,
                                  rules().slack(), motion_.view(), slack_.view()});
-    parallel_for(space_, "collision/keep_base", x.size(), CopyPositions{x, base_.view()});
+    parallel_for(space_, "collision/keep_base", x.size(), CopyItems<Vec3>{x, base_.view()});
     begin_search();
     end_search();
 }
@@ -313,6 +317,12 @@ bool DeviceClothContact::has_slid(View<const Vec3> x)
                space_, "collision/device_slid", pairs.size(), 0,
                CountSlid{near_.soup(), pairs, x, expected_.view(), {half_thickness_.view()}, rules().slid()},
                sum_) > 0;
+}
+
+void DeviceClothContact::abandon_step()
+{
+    parallel_for(space_, "collision/abandon", slack_.size(),
+                 CopyItems<double>{slack_of_start_.view(), slack_.view()});
 }
 
 void DeviceClothContact::end_step(StepField x)

@@ -25,6 +25,7 @@ public:
     bool advance(StepField x, const FindSupported& find_supported) override;
     bool limit_motion(StepField x, StepField v, double dt, const FindSupported& find_supported) override;
     void end_step(StepField x) override;
+    void abandon_step() override;
     void forget() override;
 
 private:
@@ -46,7 +47,8 @@ private:
     GuardOf guards() const;
 
     const CudaSpace& space_;
-    DeviceArray<double> half_thickness_, slack_;          ///< [vertices] [m]
+    DeviceArray<double> half_thickness_;                  ///< [vertices] [m]
+    DeviceArray<double> slack_, slack_of_start_;          ///< [vertices] now; at the start of the step [m]
     View<const Vec3> prediction_;                         ///< [cloth] on the device [m]
     DeviceArray<Vec3> deviation_;                         ///< [cloth] [m]
     DeviceArray<Vec3> base_, motion_, expected_;          ///< [vertices] see HostClothContact [m]

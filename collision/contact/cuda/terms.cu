@@ -14,10 +14,11 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
     : space_(space), tables_(cloths, int(colliders.size()), triangles, positions), settings_(settings),
       colliders_(space, triangles, positions, colliders,
                  {largest_gap(cloths), settings.face_vertex, settings.edge_edge}),
-      energy_(space), memory_(space), cloth_of_(space, "terms/cloth_of"), gap_(space, "terms/gap"),
-      collider_friction_(space, "terms/collider_friction"), cloth_friction_(space, "terms/cloth_friction"),
-      half_thickness_(space, "terms/half_thickness"), rigid_(space, "terms/rigid"),
-      altitude_(space, "terms/altitude"), clearance_(space, "terms/clearance"),
+      energy_(space), memory_(std::make_unique<DeviceContactMemory>(space)),
+      memory_of_start_(std::make_unique<DeviceContactMemory>(space)), cloth_of_(space, "terms/cloth_of"),
+      gap_(space, "terms/gap"), collider_friction_(space, "terms/collider_friction"),
+      cloth_friction_(space, "terms/cloth_friction"), half_thickness_(space, "terms/half_thickness"),
+      rigid_(space, "terms/rigid"), altitude_(space, "terms/altitude"), clearance_(space, "terms/clearance"),
       overlap_(space, "terms/overlap", positions.size()), pair_flags_(space, "terms/pair_flags"),
       flags_(space, "terms/flags"), supported_(space, "terms/supported", positions.size()),
       list_(space, "terms/list"), gauss_seidel_(space, positions.size()),
@@ -54,6 +55,7 @@ View<const NearestSurface> DeviceContactTerms::nearest()
 void DeviceContactTerms::begin_step(const StepStart& start, View<const Vec3> carried)
 {
     TOILE_ASSERT(start.device.x.size() == overlap_.size());
+    has_remembered_ = false;
     energy_.use_true_hessian(start.wants_true_hessian);
     rules_ = rules_of(start, settings_);
     rules_.cloth_of = cloth_of_.view();
@@ -93,13 +95,13 @@ void DeviceContactTerms::make(const ClothContact* between)
     const int kept = list_flagged(space_, "contact/list_terms", flags, list_, count_, scratch_);
     const View<ContactTerm> terms = energy_.reserve(kept);
     parallel_for(space_, "contact/make_terms", kept,
-                 MakeTerm{pairs, rules_, clearance, replaced, memory_.known(), list_.view(), terms});
+                 MakeTerm{pairs, rules_, clearance, replaced, memory_->known(), list_.view(), terms});
     energy_.build_incidence(overlap_.size());
 }
 
-FrictionLimits DeviceContactTerms::update_forces()
+TermSums DeviceContactTerms::update_forces()
 {
-    return parallel_sum(space_, "contact/update_forces", energy_.terms().size(), FrictionLimits{},
+    return parallel_sum(space_, "contact/update_forces", energy_.terms().size(), TermSums{},
                         UpdateForce{energy_.change_terms(), x_.device()}, limits_);
 }
 
@@ -185,7 +187,13 @@ void DeviceContactTerms::project_friction(StepField v)
                         ProjectFriction{projection_rules_, x_.change_on_device(), v.change_on_device()}, 1);
 }
 
-void DeviceContactTerms::remember(Slip slip) { memory_.keep(energy_.terms(), rules_, slip, x_.device()); }
+void DeviceContactTerms::remember(Slip slip)
+{
+    if (!has_remembered_)
+        std::swap(memory_, memory_of_start_);
+    has_remembered_ = true;
+    memory_->keep(energy_.terms(), rules_, slip, x_.device());
+}
 
 double DeviceContactTerms::end_step()
 {
@@ -198,9 +206,17 @@ double DeviceContactTerms::end_step()
     return min_gap;
 }
 
+void DeviceContactTerms::abandon_step()
+{
+    if (has_remembered_)
+        std::swap(memory_, memory_of_start_);
+    has_remembered_ = false;
+}
+
 void DeviceContactTerms::forget()
 {
-    memory_.forget();
+    memory_->forget();
+    memory_of_start_->forget();
     colliders_.forget();
 }
 

@@ -26,7 +26,7 @@ public:
     void make(const ClothContact* between) override;
     bool empty() const override { return !energy_.has_terms(); }
     void see(StepField x) override { x_ = x; }
-    FrictionLimits update_forces() override;
+    TermSums update_forces() override;
     void adopt_forces() override;
     void update_multipliers(bool is_near) override;
     void mark_touching(View<unsigned char> touches) override;
@@ -39,8 +39,9 @@ public:
     void stop_at_surfaces(StepField v) override;
     void project_friction(StepField v) override;
     void remember(Slip slip) override;
-    int remembered() const override { return memory_.size(); }
+    int remembered() const override { return memory_->size(); }
     double end_step() override;
+    void abandon_step() override;
     void forget() override;
     DeviceActiveSet* on_device(const CudaSpace& space) override;
 
@@ -56,9 +57,10 @@ private:
     Settings settings_;
     DeviceColliderPairs colliders_;
     DeviceContactEnergy energy_;
-    DeviceContactMemory memory_;
-    ContactRules rules_;               ///< of this step
-    ProjectionRules projection_rules_; ///< likewise
+    std::unique_ptr<DeviceContactMemory> memory_, memory_of_start_; ///< the latter if has_remembered_
+    bool has_remembered_ = false;                                   ///< in this step
+    ContactRules rules_;                                            ///< of this step
+    ProjectionRules projection_rules_;                              ///< likewise
     StepField x_{View<Vec3>()};
 
     DeviceArray<int> cloth_of_; ///< see ContactTables
@@ -77,7 +79,7 @@ private:
     PinnedArray<Vec3> advected_;           ///< see advect()
     PinnedArray<NearestSurface> nearest_;  ///< see nearest()
     PinnedArray<int> count_;
-    SumScratch<FrictionLimits> limits_;
+    SumScratch<TermSums> limits_;
     SumScratch<Smallest> smallest_;
     DeviceScratch scratch_;
 };

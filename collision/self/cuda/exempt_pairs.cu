@@ -4,6 +4,7 @@
 
 #include "collision/body/cuda/pair_kernels.h"
 #include "collision/self/cuda/exempt_kernels.h"
+#include "core/compute/copy_items.h"
 #include "core/compute/cuda/parallel.cuh"
 
 namespace toile::collision {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/compute/copy_items.h"
 #include "core/compute/cuda/parallel.cuh"
 #include "core/pd/newton/embedded_points.h"
 
@@ -125,7 +126,7 @@ void DeviceBody::begin(const StepInput& input)
     scheme_ = Bdf2::make(settings_.integrator, input.dt, previous_dt_);
     if (std::isfinite(input.max_error))
         parallel_for(space_, "pd/keep_restart", restart_.size(),
-                     CopyRestart{restart_.view(), restart_before_.view()});
+                     CopyItems<unsigned char>{restart_.view(), restart_before_.view()});
     if (previous_dt_ == 0.0 || input.dt > Bdf2::kMaxRatio * previous_dt_)
         restart_all();
     prepare(input.dt, input.fixed);
@@ -155,7 +156,7 @@ void DeviceBody::project(StepProjection& projection, const std::function<bool()>
     DeviceStepProjection& limits = *projection.on_device(space_);
     if (limits.is_satisfied(x_t1_.device()))
         return;
-    parallel_for(space_, "pd/keep_unprojected", x_.size(), CopyPositions{x_t1_.device(), found_.view()});
+    parallel_for(space_, "pd/keep_unprojected", x_.size(), CopyItems<Vec3>{x_t1_.device(), found_.view()});
     limits.project(x_t1_.change_on_device(), inverse_masses_.view(), clear_contacts);
     parallel_for(space_, "pd/projected", x_.size(),
                  AddProjected{found_.view(), x_t1_.device(), dt_, v_.change_on_device()});
@@ -185,7 +186,7 @@ OuterLoop::Outcome DeviceBody::minimise(ActiveSetEnergy* active, int max_iterati
     const OuterLoop::Outcome outcome =
         in_contact ? minimise_with_contact(*active->on_device(space_), max_iterations, is_first)
                    : minimise_free(is_first);
-    parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_->x(), x_t1_.overwrite_on_device()});
+    parallel_for(space_, "pd/take", x_.size(), CopyItems<Vec3>{descent_->x(), x_t1_.overwrite_on_device()});
     return outcome;
 }
 

@@ -82,7 +82,7 @@ private:
                                           bool is_calm) override;
     void restart_touching(const StepInput& input) override;
     void mark_touching(ActiveSetEnergy& active) override;
-    double error() override;
+    double local_error() override;
     void abandon() override;
     void finish(StepProjection* projection) override;
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/compute/copy_items.h"
 #include "core/compute/cuda/parallel.cuh"
 #include "core/pd/cuda/body.h"
 
@@ -98,7 +99,7 @@ void DeviceBody::predict()
                                      x_t1_.overwrite_on_device()});
     else
         parallel_for(space_, "pd/begin", x_.size(),
-                     CopyPositions{prediction_.device(), x_t1_.overwrite_on_device()});
+                     CopyItems<Vec3>{prediction_.device(), x_t1_.overwrite_on_device()});
 }
 
 /// Predicts all vertices, and writes the inputs to the descent.
@@ -124,7 +125,7 @@ void DeviceBody::mark_touching(ActiveSetEnergy& active)
         active.mark_touching(x_t1_, touches_.view());
 }
 
-double DeviceBody::error()
+double DeviceBody::local_error()
 {
     return parallel_sum(space_, "pd/error", x_.size(), StepErrorSum{},
                         MotionError{scheme_, motion(), x_t1_.device(), previous_dt_ == 0.0}, error_sums_)
@@ -133,7 +134,8 @@ double DeviceBody::error()
 
 void DeviceBody::abandon()
 {
-    parallel_for(space_, "pd/abandon", restart_.size(), CopyRestart{restart_before_.view(), restart_.view()});
+    parallel_for(space_, "pd/abandon", restart_.size(),
+                 CopyItems<unsigned char>{restart_before_.view(), restart_.view()});
     touches_.fill_zero();
 }
 

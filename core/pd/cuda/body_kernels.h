@@ -99,20 +99,6 @@ struct StandStill {
     TOILE_HD void operator()(int i) const { standing[i] = fixed[i] ? prediction[i] : x[i]; }
 };
 
-/// Copies positions.
-struct CopyPositions {
-    View<const Vec3> x;
-    View<Vec3> to;
-    TOILE_HD void operator()(int i) const { to[i] = x[i]; }
-};
-
-/// Copies which vertices restart.
-struct CopyRestart {
-    View<const unsigned char> restart;
-    View<unsigned char> to;
-    TOILE_HD void operator()(int i) const { to[i] = restart[i]; }
-};
-
 /// Saves the result of a descent, or restores it: positions [m] and gradient [N], [vertices].
 struct CopyFound {
     View<const Vec3> x, gradient;

@@ -93,6 +93,9 @@ public:
 
     /// Stores the state that the next step builds on. x [vertices] are the final positions.
     virtual void end_step(StepField x) = 0;
+
+    /// Goes back to before begin_step(). In place of clear(), keep_apart() and end_step().
+    virtual void abandon_step() {}
 };
 
 } // namespace toile

@@ -65,6 +65,7 @@ public:
     bool is_complete() const override { return leading_.is_complete(); }
     bool keep_apart(StepField x, StepField v) override { return leading_.keep_apart(first(x), first(v)); }
     void end_step(StepField x) override { leading_.end_step(first(x)); }
+    void abandon_step() override { leading_.abandon_step(); }
 
 private:
     template <typename T>

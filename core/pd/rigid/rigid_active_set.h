@@ -40,6 +40,7 @@ public:
     void clear(StepField q, StepField v) override;
     bool keep_apart(StepField q, StepField v) override;
     void end_step(StepField q) override;
+    void abandon_step() override { surface_.abandon_step(); }
 
 private:
     template <typename Projection>

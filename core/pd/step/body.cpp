@@ -157,7 +157,7 @@ void Body::mark_touching(ActiveSetEnergy& active)
         active.mark_touching(x_t1_, touches_);
 }
 
-double Body::error()
+double Body::local_error()
 {
     return parallel_sum(kCpu, int(x_.size()), StepErrorSum{},
                         MotionError{scheme_, motion(), x_t1_, previous_dt_ == 0.0})

@@ -57,7 +57,7 @@ private:
     OuterLoop::Outcome minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
                                           bool is_calm) override;
     void mark_touching(ActiveSetEnergy& active) override;
-    double error() override;
+    double local_error() override;
     void abandon() override;
     void finish(StepProjection* projection) override;
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;

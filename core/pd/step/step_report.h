@@ -29,8 +29,8 @@ struct StepReport {
 
     Status status = Status::Converged;
     int steps = 0;
-    int refused = 0;            ///< beside these, steps that were not taken: their error was too large
     int unfinished = 0;         ///< of these, steps that ended at the iteration limit
+    int refused = 0;            ///< beside these, steps that were not taken: their error was too large
     int iterations = 0;         ///< outer iterations, summed over steps
     int linear_iterations = 0;  ///< PCG iterations inside them, summed
     double displacement = 0.0;  ///< [m] largest vertex move of the last outer iteration, worst step

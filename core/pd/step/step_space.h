@@ -51,7 +51,7 @@ public:
     virtual void mark_touching(ActiveSetEnergy& active) = 0;
 
     /// RMS local error of the time integration [m]. After mark_touching(), as finish().
-    virtual double error() = 0;
+    virtual double local_error() = 0;
 
     /// Goes back to before begin().
     virtual void abandon() = 0;

@@ -108,8 +108,9 @@ StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits&
         space.restart_touching(input);
         input.active->make_feasible(space.end_positions());
     }
+    Newton::Patience after = patience;
     if (limits.speed_tolerance > 0.0)
-        minimise_by_newton(space, input, limits, patience, report);
+        minimise_by_newton(space, input, limits, after, report);
     else
         minimise(space, input.active, limits, report);
     if (report.status == StepReport::Status::NonFinite)
@@ -118,10 +119,13 @@ StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits&
     if (input.active)
         space.mark_touching(*input.active);
     if (std::isfinite(input.max_error))
-        if (const double error = space.error(); error > input.max_error) {
+        if (const double error = space.local_error(); error > input.max_error) {
             space.abandon();
+            if (input.active)
+                input.active->abandon_step();
             return refused(report, error);
         }
+    patience = after;
     space.finish(input.projection);
     const bool stands = limits.speed_tolerance > 0.0 && (!input.active || input.active->is_complete());
     correct(space, input, stands);

@@ -44,13 +44,11 @@ def run(bench, scene, solver, frames):
     source["solver"] = {"substeps": source["solver"]["substeps"], "integrator": "implicit-euler", **solver}
     with tempfile.TemporaryDirectory() as folder:
         out, report = pathlib.Path(folder, "out"), pathlib.Path(folder, "report.json")
-        changed = scene.with_name("." + scene.name)  # beside its meshes
-        changed.write_text(json.dumps(source))
-        try:
-            subprocess.run([bench, "simulate", changed, "-o", out, "--report", report, "--no-check", "--quiet"],
+        with tempfile.NamedTemporaryFile("w", dir=scene.parent, suffix=".json") as changed:  # beside its meshes
+            json.dump(source, changed)
+            changed.flush()
+            subprocess.run([bench, "simulate", changed.name, "-o", out, "--report", report, "--no-check", "--quiet"],
                            check=True, stdout=subprocess.DEVNULL)
-        finally:
-            changed.unlink()
         caches = [read_pc2(path) for path in sorted(out.glob("*.pc2"))]
         return json.loads(report.read_text())["frames"], np.concatenate(caches, axis=1)
 
@@ -66,6 +64,9 @@ def main():
 
     seen = [frame for frame in (4, 8) if frame < args.frames] + [args.frames - 1]
     columns = COLUMNS + [f"mm at {frame}" for frame in seen]
+    kept = list(csv.reader(args.output.open())) if args.output and args.output.is_file() else [columns]
+    if kept[0] != columns:
+        sys.exit(f"error: {args.output}: has other columns; use the same --frames, or another file")
     print("| " + " | ".join(columns) + " |\n|" + "---|" * len(columns), flush=True)
     rows, exact = [], None
     for name, solver in [REFERENCE] + METHODS[args.figure]:
@@ -81,11 +82,9 @@ def main():
         print("| " + " | ".join(map(str, rows[-1])) + " |", flush=True)
 
     if args.output:
-        kept = []
-        if args.output.is_file():
-            kept = [row for row in list(csv.reader(args.output.open()))[1:] if row[0] != str(args.figure)]
+        kept = [row for row in kept if row[0] != str(args.figure)]
         with args.output.open("w", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerows([columns] + kept + rows)
+            csv.writer(file, lineterminator="\n").writerows(kept + rows)
 
 
 if __name__ == "__main__":

@@ -278,7 +278,7 @@ void SceneSoftBodies::update_targets(double t_t1, const std::vector<Collider>& c
                     if (is_active)
                         targets[body.unknown(attachment.vertices()[k])] = attachment.target(k);
                 } else if (is_active)
-                    springs_->set_target(spring++, attachment.target(k));
+                    springs_->hold(spring++, attachment.target(k));
                 else
                     springs_->release(spring++);
         }

@@ -1,3 +1,4 @@
+#include "collision/contact/memory.h"
 #include "collision/contact/rules.h"
 
 #include <gtest/gtest.h>
@@ -63,6 +64,12 @@ TEST(ContactRules, ClothGoesNoDeeperIntoAShapeUnlessAnotherSqueezesIt)
 {
     EXPECT_DOUBLE_EQ(StartBehind().term_of(ContactKind::kVertexShape).min_gap, -0.012);
     EXPECT_FALSE(StartBehind().term_of(ContactKind::kVertexShape, {}, -1e-3).has_min_gap());
+    ContactTerm squeezed = StartBehind().term_of(ContactKind::kVertexShape, {}, -1e-3);
+    ContactRecord record = ContactRecord::of(squeezed.pair);
+    record.normal = squeezed.pair.normal;
+    record.multiplier.shift = 1e-3; // from before it was squeezed
+    WarmStart{squeezed}.consider(record);
+    EXPECT_EQ(squeezed.spring.shift, 0.0);
     StartBehind above;
     above.x[0].z() = 0.01;
     EXPECT_DOUBLE_EQ(above.term_of(ContactKind::kVertexShape).min_gap, kMinGap * kKeep);

@@ -81,6 +81,7 @@ ContactTerm pressed_by(const std::array<int, 3>& face, double shift)
     term.pair.kind = ContactKind::kClothVertexFace;
     term.pair.vertex = {7, face[0], face[1], face[2]};
     term.pair.normal = Vec3::UnitY();
+    term.min_gap = 2e-4;
     term.normal_force = 1.0;
     term.multiplier.shift = shift;
     return term;

@@ -50,7 +50,7 @@ public:
     }
     void restart_touching(const StepInput&) override { calls.push_back("restart touching"); }
     void mark_touching(ActiveSetEnergy&) override { calls.push_back("mark touching"); }
-    double error() override
+    double local_error() override
     {
         calls.push_back("error");
         return 2e-3;
@@ -80,6 +80,7 @@ public:
         return moves_left-- > 0;
     }
     void end_step(StepField) override { calls.push_back("end contact"); }
+    void abandon_step() override { calls.push_back("abandon contact"); }
 
     void observe(View<const Vec3>) override {}
     void project(View<Vec3>, View<const double>, const std::function<bool()>&) override {}
@@ -165,7 +166,7 @@ TEST(TakeStep, IsAbandonedWhereItsErrorIsTooLarge)
     NotedStep step;
     const StepReport report = step.step(true, true, 1e-3);
     EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "restart touching", "minimise first",
-                                        "revise", "mark touching", "error", "abandon"));
+                                        "revise", "mark touching", "error", "abandon", "abandon contact"));
     EXPECT_EQ(report.refused, 1);
     EXPECT_EQ(report.steps, 0);
     EXPECT_EQ(report.iterations, 2);
@@ -175,6 +176,30 @@ TEST(TakeStep, IsAbandonedWhereItsErrorIsTooLarge)
     EXPECT_EQ(step.step(false, false, 3e-3).refused, 0);
     EXPECT_THAT(step.calls, ElementsAre("begin", "minimise first", "error", "finish", "end"));
 }
+
+/// Contact that holds nothing, and says where asked that vertex 2 touches.
+class TouchesAtTwo : public ActiveSetEnergy {
+public:
+    bool touches = false;
+    int abandoned = 0;
+
+    void begin_step(const StepStart&) override {}
+    bool may_be_active() const override { return false; }
+    bool make_feasible(StepField) const override { return false; }
+    bool sweep_once(StepField) const override { return false; }
+    double add_gradient(View<const Vec3>, View<Vec3>) const override { return 0.0; }
+    bool activate(View<const Vec3>) override { return false; }
+    void add_hessian_product(View<const Vec3>, View<Vec3>) const override {}
+    View<const Mat3> diagonal_blocks() const override { return {}; }
+    void append_terms(std::vector<FrozenTerm>&) const override {}
+    void mark_touching(StepField, View<unsigned char> marks) override { marks[2] = touches ? 1 : marks[2]; }
+    bool revise(StepField, MinimiserProgress) override { return false; }
+    void clear(StepField, StepField) override {}
+    bool is_complete() const override { return true; }
+    bool keep_apart(StepField, StepField) override { return false; }
+    void end_step(StepField) override {}
+    void abandon_step() override { ++abandoned; }
+};
 
 /// A body that has refused a step goes on as if it had not been tried.
 TEST(TakeStep, LeavesNoTraceWhereItIsRefused)
@@ -190,8 +215,9 @@ TEST(TakeStep, LeavesNoTraceWhereItIsRefused)
             start,
             std::make_unique<System>(std::vector<double>(n, 0.1), std::vector<std::shared_ptr<Energy>>()),
             settings);
+        TouchesAtTwo contact;
         const auto step = [&](double dt, double pull) {
-            return body.step(dt, std::vector<Vec3>(n, Vec3(0.0, 0.0, pull)), fixed, targets, nullptr,
+            return body.step(dt, std::vector<Vec3>(n, Vec3(0.0, 0.0, pull)), fixed, targets, &contact,
                              nullptr);
         };
         EXPECT_EQ(step(0.01, 1.0).refused, 0);
@@ -199,12 +225,15 @@ TEST(TakeStep, LeavesNoTraceWhereItIsRefused)
         if (tries) {
             const std::vector<Vec3> x(body.positions().begin(), body.positions().end());
             body.refuse_steps_beyond(1e-6);
+            contact.touches = true;
             const StepReport report = step(0.01, 100.0);
             EXPECT_EQ(report.refused, 1);
             EXPECT_EQ(report.steps, 0);
             EXPECT_GT(report.step_error, 1e-6);
             EXPECT_EQ(std::vector<Vec3>(body.positions().begin(), body.positions().end()), x);
             body.refuse_steps_beyond(kAnyStepError);
+            contact.touches = false;
+            EXPECT_EQ(contact.abandoned, 1);
         }
         EXPECT_EQ(step(0.005, 100.0).refused, 0);
         EXPECT_EQ(step(0.005, 100.0).refused, 0);

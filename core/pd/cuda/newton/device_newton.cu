@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/compute/copy_items.h"
 #include "core/compute/cuda/parallel.cuh"
 #include "core/compute/cuda/record_sum.cuh"
 #include "core/pd/cuda/newton/device_newton.h"
@@ -240,13 +241,13 @@ void DeviceNewton::retake(double length)
 
 void DeviceNewton::keep()
 {
-    parallel_for(space_, "newton/keep", trial_x_.size(), CopyPositions{problem_.x.device(), kept_.view()});
+    parallel_for(space_, "newton/keep", trial_x_.size(), CopyItems<Vec3>{problem_.x.device(), kept_.view()});
 }
 
 void DeviceNewton::restore()
 {
     parallel_for(space_, "newton/restore", trial_x_.size(),
-                 CopyPositions{kept_.view(), problem_.x.change_on_device()});
+                 CopyItems<Vec3>{kept_.view(), problem_.x.change_on_device()});
 }
 
 bool DeviceNewton::has_moved()

@@ -156,7 +156,7 @@ protected:
     {
         cpu.see(made.found);
         device.see(board.found);
-        const FrictionLimits expected = cpu.update_forces(), limits = device.update_forces();
+        const TermSums expected = cpu.update_forces(), limits = device.update_forces();
         EXPECT_GT(expected.total, 0.0);
         EXPECT_NEAR(limits.total, expected.total, 1e-9 * expected.total);
         EXPECT_NEAR(limits.change, expected.change, 1e-9 * expected.total);
