@@ -11,7 +11,8 @@ namespace toile::scenes {
 /// All lengths are ticks times a power of two, and a step of n ticks begins at a multiple of n ticks. A step
 /// chosen by what moves is halved while its estimated error exceeds the one allowed, doubled while it is a
 /// tenth of that, and shortened where bodies are fast. One whose error is ten times the one allowed, such as
-/// that in which something falls to the floor, is made again, unless it is short already.
+/// that in which something falls to the floor, is made again where that is possible, unless it is short
+/// already.
 class StepControl {
 public:
     /// Longest step by what moves [s]. A sample is divided evenly, so it is an upper bound.

@@ -237,13 +237,14 @@ struct World::Parts {
         return total;
     }
 
-    /// Takes a step of dt [s] that ends at t [s]. Its error may be at most max_error [m], except where
-    /// avatars move or there are several groups: these do not go back.
+    /// Takes a step of dt [s] that ends at t [s]. With soft bodies its error may be at most max_error [m],
+    /// except where avatars move or there are several groups: these do not go back. Cloth does not bounce:
+    /// what a long step takes from it, impacts and seams that snap shut should take anyway.
     StepReport step(double dt, double t, double max_error)
     {
         const StageScope stage("scenes/step");
         Cancellation::check();
-        bool can_go_back = groups.size() == 1;
+        bool can_go_back = groups.size() == 1 && groups.front().soft_bodies() != nullptr;
         for (Collider& collider : colliders) {
             collider.advance_to(std::max(t, 0.0));
             can_go_back = can_go_back && !collider.moved();
