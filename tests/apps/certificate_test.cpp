@@ -93,7 +93,7 @@ std::string stretched_sheet(double column)
         for (int i = 0; i < 8; ++i) {
             const auto corner = [&](int di, int dj) {
                 const std::string k = std::to_string(9 * (j + dj) + i + di + 1);
-                return " " + k + "/" + k;
+                return std::string(" ").append(k).append("/").append(k);
             };
             obj += "f" + corner(0, 0) + corner(1, 0) + corner(1, 1) + corner(0, 1) + "\n";
         }

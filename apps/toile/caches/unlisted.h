@@ -4,7 +4,7 @@
 
 #include "scenes/format/scene.h"
 
-namespace CLI {
+namespace CLI { // NOLINT(readability-identifier-naming): the library's
 class App;
 } // namespace CLI
 

@@ -38,8 +38,8 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
         add(std::to_string(found.cloth_avatar_crossings) + " crossings with avatars");
     if (found.crossing) {
         const auto& [frame, a, b, point] = *found.crossing;
-        add("the first of \"" + a.name + "\" with " + (b.name == a.name ? "itself" : "\"" + b.name + "\"") + " " +
-            near_text(point) + (b.bone.empty() ? "" : ", by \"" + b.bone + "\""));
+        add("the first of \"" + a.name + "\" with " + (b.name == a.name ? "itself" : "\"" + b.name + "\"") +
+            " " + near_text(point) + (b.bone.empty() ? "" : ", by \"" + b.bone + "\""));
     }
     if (found.passage)
         add(std::to_string(found.passages) +

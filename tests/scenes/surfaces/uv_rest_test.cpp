@@ -51,7 +51,7 @@ std::string grid(int columns, int rows, const std::function<Vec3(double, double)
         for (int i = 0; i < columns; ++i) {
             const auto corner = [&](int di, int dj) {
                 const std::string k = std::to_string((j + dj) * (columns + 1) + i + di + 1);
-                return " " + k + "/" + k;
+                return std::string(" ").append(k).append("/").append(k);
             };
             text += "f" + corner(0, 0) + corner(1, 1) + corner(1, 0) + "\nf" + corner(0, 0) + corner(0, 1) +
                     corner(1, 1) + "\n";
@@ -307,8 +307,8 @@ TEST_F(UvRestTest, MayHaveLongerPanelsAlongASeam)
         EXPECT_NE(world.advance_frame().status, StepReport::Status::NonFinite);
     const std::vector<Vec3>& x = world.cloths()[0].positions;
     double hem = 0.0;
-    for (int i = 0; i < 10; ++i)
-        hem += (x[size_t(66 + i + 1)] - x[size_t(66 + i)]).norm();
+    for (size_t v = 66; v < 76; ++v)
+        hem += (x[v + 1] - x[v]).norm();
     EXPECT_NEAR(hem, 0.3, 0.01) << "the hem of the ruffle has the length of its panel";
 }
 
