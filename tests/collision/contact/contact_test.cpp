@@ -242,6 +242,23 @@ TEST(Contact, IgnoresTruncatedForcesInFrictionButWarmStartsWithThem)
     EXPECT_GT(scene.contact.energy().terms()[0].normal_force, 0.0);
 }
 
+/// Pairs are found again within the step, which remembers their forces: of a step that is not taken, nothing.
+TEST(Contact, RemembersNothingOfAnAbandonedStep)
+{
+    for (const bool is_abandoned : {false, true}) {
+        RisingPlate scene;
+        std::vector<Vec3> x = scene.slid();
+        ASSERT_TRUE(scene.contact.revise(x, MinimiserProgress::kConverged));
+        ASSERT_GT(scene.contact.energy().terms()[0].normal_force, 0.0);
+        if (is_abandoned)
+            scene.contact.abandon_step();
+        scene.contact.begin_step(
+            {scene.start, scene.start, scene.diagonal, scene.fixed, scene.masses, 0.5 * RisingPlate::kDt});
+        ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
+        EXPECT_EQ(scene.contact.energy().terms()[0].normal_force > 0.0, !is_abandoned);
+    }
+}
+
 TEST(Contact, KeepsTheEquilibriumDepthOfAPair)
 {
     RisingPlate scene;

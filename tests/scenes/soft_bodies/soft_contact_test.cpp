@@ -90,6 +90,23 @@ TEST_F(SoftContact, BouncesAsHighAsInShortSteps)
     EXPECT_LT(refused, 10);
 }
 
+/// An avatar that moves does not go back, wherever it is.
+TEST_F(SoftContact, RefusesNoStepInWhichAnAvatarMoves)
+{
+    for (const bool moves : {false, true}) {
+        const std::string to = moves ? R"({"time": 1, "translate": [0.1, 0, 0]})" : R"({"time": 1})";
+        World world = world_of(
+            R"("frames": 5, "fps": 30, "cloths": [], "avatars": [{"name": "floor", "plane": {}},
+            {"name": "far", "sphere": {"radius": 0.1}, "translate": [9, 1, 0], "keyframes": [{"time": 0}, )" +
+            to + R"(]}], "soft_bodies": [)" +
+            block("jelly", R"("young": 20000, "translate": [0, 0.35, 0], "velocity": [0, -4, 0])") + "]");
+        int refused = 0;
+        while (world.frame() + 1 < world.frame_count())
+            refused += world.advance_frame().refused;
+        EXPECT_EQ(refused == 0, moves);
+    }
+}
+
 /// A weight of 200 kPa, in short steps: what a step loses the next ones do not get back by themselves.
 TEST_F(SoftContact, DoesNotSinkIntoTheFloorStepByStep)
 {
