@@ -18,8 +18,7 @@ public:
     void add(int frame, const StepReport& report);
 
     /// @param counts  [soft bodies] World::inverted_tets()
-    void add_inverted(int frame, const std::vector<scene::SoftBody>& bodies,
-                      const std::vector<int>& counts);
+    void add_inverted(int frame, const std::vector<scene::SoftBody>& bodies, const std::vector<int>& counts);
 
     /// Prints a line for each kind of shortfall.
     void sum_up(int frames) const;

@@ -154,7 +154,8 @@ TEST_F(CachedCloth, IsRefusedWithTheRemedy)
         {R"("file": "sheet.pc2")", R"(cloths[0].file: "sheet.pc2" has no faces; name the OBJ)"},
         {R"("file": "sheet.abc#/other")", "has no mesh /other; its meshes are /sheet/sheetShape"},
         {R"("file": "sheet.abc", "rest": "uv", "rest_file": "sheet.mdd")", R"("sheet.mdd" has no faces)"},
-        {R"("file": "sheet.stl")", R"("sheet.stl" is of an unknown format; use .obj, .ply, .abc, .usda or .usdc)"},
+        {R"("file": "sheet.stl")",
+         R"("sheet.stl" is of an unknown format; use .obj, .ply, .abc, .usda or .usdc)"},
     };
     for (const auto& [cloth, expected] : cases)
         EXPECT_THAT(complaint(cloth), HasSubstr(expected)) << cloth;
