@@ -79,7 +79,7 @@ TEST_F(CachedCloth, IsThatOfTheObj)
     const std::string keys = R"(, "rest": "uv", "uv_scale": 1, "groups": {"back": {"fabric": "denim"}})";
     const LoadedCloth from_obj = load(R"("file": "sheet.obj")" + keys);
     for (const std::string name : {"sheet.abc", "sheet.abc#/sheet/sheetShape"}) {
-        const LoadedCloth loaded = load(R"("file": ")" + name + R"(")" + keys);
+        const LoadedCloth loaded = load(std::string("\"file\": \"").append(name).append("\"").append(keys));
         EXPECT_EQ(loaded.state.positions, from_obj.state.positions);
         EXPECT_EQ(loaded.state.triangles, from_obj.state.triangles);
         EXPECT_EQ(loaded.state.panels, from_obj.state.panels);
