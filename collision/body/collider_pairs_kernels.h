@@ -99,7 +99,7 @@ struct ReachVertex {
         return whole < kMaxReach ? whole : kMaxReach;
     }
 
-    /// The same without a maximum: nothing else stops cloth at a shape.
+    /// The same of shapes, without a maximum: nothing else stops cloth at a plane.
     TOILE_HD double shape_reach(int v) const
     {
         return gap + kReachMargin + (prediction[v] - found_at[v]).norm();
