@@ -4,7 +4,8 @@
 
 #include "scenes/format/scene.h"
 
-namespace CLI { // NOLINT(readability-identifier-naming): the library's
+// NOLINTNEXTLINE(readability-identifier-naming): the library's
+namespace CLI {
 class App;
 } // namespace CLI
 

@@ -2,7 +2,8 @@
 
 #include <functional>
 
-namespace CLI { // NOLINT(readability-identifier-naming): the library's
+// NOLINTNEXTLINE(readability-identifier-naming): the library's
+namespace CLI {
 class App;
 } // namespace CLI
 
