@@ -1,6 +1,7 @@
 #include "apps/toile/render/film.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/check/cache_cloth.h"
@@ -178,8 +179,12 @@ std::vector<Vec3> Film::positions(const Track& track, int frame) const
 
 bool Film::is_shown(const scenes::SceneBody& body) const
 {
-    // The picture's floor replaces a plane.
-    return !(settings_.render.ground && std::holds_alternative<scene::Plane>(body.settings().shape));
+    if (!settings_.render.ground || !std::holds_alternative<scene::Plane>(body.settings().shape))
+        return true;
+    constexpr double kSame = 1e-3; // [m], [-]: the picture's floor replaces a plane there
+    const Vec3 up = body.pose().linear() * Vec3::UnitY();
+    return (up - Vec3::UnitY()).norm() > kSame ||
+           std::abs(body.pose().translation().y() - *settings_.render.ground) > kSame;
 }
 
 void Film::show_bodies(int frame)

@@ -116,6 +116,19 @@ TEST_F(RenderCommand, LooksAtAPointOrACloth)
     EXPECT_NEAR(blue_fraction(picture({"--target", "skirt"})), all, 0.1 * all);
 }
 
+TEST_F(RenderCommand, DrawsPlanesThatAreNotItsFloor)
+{
+    const auto blue = [&](const std::string& placed) {
+        temporary_.write("scene.json",
+                         scene(R"({"name": "floor", "plane": {}, "color": [0, 0.1, 0.9])" + placed + "}"));
+        return blue_fraction(picture({"--elevation", "30"}));
+    };
+    const double skirt = blue("");
+    EXPECT_LT(skirt, 0.5);
+    EXPECT_GT(blue(R"(, "translate": [0, 0.02, 0])"), skirt + 0.3) << "above it";
+    EXPECT_GT(blue(R"(, "rotate_deg": [2, 0, 0])"), skirt + 0.1) << "askew";
+}
+
 TEST_F(RenderCommand, GoesAroundAFrame)
 {
     const Image sheet = picture({"--turntable", "4", "--sheet", "2"});
