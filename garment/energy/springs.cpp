@@ -6,10 +6,10 @@ namespace toile::garment {
 
 Springs::Springs(const std::vector<Spring>& springs)
 {
-    for (const Spring& spring : springs)
+    for (const Spring& spring : springs) {
         springs_.push_back({spring.vertex, spring.stiffness});
-    for (const Spring& spring : springs)
         stiffness_.push_back(spring.stiffness);
+    }
 }
 
 void Springs::add_hessian(Triplets& H) const

@@ -50,7 +50,8 @@ MotionView Body::motion()
 void Body::begin(const StepInput& input)
 {
     dt_ = input.dt;
-    restart_before_ = restart_;
+    if (std::isfinite(input.max_error))
+        restart_before_ = restart_;
     if (previous_dt_ == 0.0 || dt_ > Bdf2::kMaxRatio * previous_dt_)
         std::fill(restart_.begin(), restart_.end(), 1);
     scheme_ = Bdf2::make(settings_.integrator, dt_, previous_dt_);

@@ -11,12 +11,14 @@ import argparse
 import csv
 import json
 import pathlib
-import struct
 import subprocess
 import sys
 import tempfile
 
 import numpy as np
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[3] / "tests" / "dcc"))
+from point_cache import read_pc2  # noqa: E402
 
 REFERENCE = ("reference", {"outer": "newton", "velocity_tolerance": 1e-4, "max_iterations": 1000})
 METHODS = {
@@ -28,13 +30,6 @@ METHODS = {
          for name in ("direct", "quadrature", "chebyshev", "a-jacobi", "subspace")],
 }
 COLUMNS = ["figure", "scene", "method", "iterations", "PCG", "ms", "unfinished"]
-
-
-def read_pc2(path):
-    """[frames, vertices, 3] [m]"""
-    data = path.read_bytes()
-    vertices, = struct.unpack_from("<i", data, 16)
-    return np.frombuffer(data, "<f4", offset=32).reshape(-1, vertices, 3).astype(float)
 
 
 def run(bench, scene, solver, frames):
@@ -49,7 +44,7 @@ def run(bench, scene, solver, frames):
             changed.flush()
             subprocess.run([bench, "simulate", changed.name, "-o", out, "--report", report, "--no-check", "--quiet"],
                            check=True, stdout=subprocess.DEVNULL)
-        caches = [read_pc2(path) for path in sorted(out.glob("*.pc2"))]
+        caches = [read_pc2(path)[1] for path in sorted(out.glob("*.pc2"))]
         return json.loads(report.read_text())["frames"], np.concatenate(caches, axis=1)
 
 

@@ -300,6 +300,14 @@ TEST_F(DeviceBodyTest, MinimisesByNewtonAsOnTheCpu)
     EXPECT_GE(equal, 19);
 }
 
+DeviceBody::Settings second_order()
+{
+    DeviceBody::Settings settings;
+    settings.outer = OuterMethod::Newton;
+    settings.integrator = Integrator::Bdf2;
+    return settings;
+}
+
 /// Motion and rest of the second order, with its touch rule.
 TEST_F(DeviceBodyTest, TakesStepsOfSecondOrderAsOnTheCpu)
 {
@@ -307,9 +315,7 @@ TEST_F(DeviceBodyTest, TakesStepsOfSecondOrderAsOnTheCpu)
     settings.outer = OuterMethod::Newton;
     settings.integrator = Integrator::Bdf2;
     settings.speed_tolerance = 1e-4;
-    DeviceBody::Settings device_settings;
-    device_settings.outer = OuterMethod::Newton;
-    device_settings.integrator = Integrator::Bdf2;
+    DeviceBody::Settings device_settings = second_order();
     device_settings.speed_tolerance = 1e-4;
     device_settings.max_iterations = settings.max_iterations;
     const Swings swings(2);
@@ -330,12 +336,9 @@ TEST_F(DeviceBodyTest, TakesStepsOfSecondOrderAsOnTheCpu)
 
 TEST_F(DeviceBodyTest, GoesOnAsIfARefusedStepHadNotBeenTried)
 {
-    DeviceBody::Settings settings;
-    settings.outer = OuterMethod::Newton;
-    settings.integrator = Integrator::Bdf2;
     const Swings swings(3);
     TouchingPlane plane(swings.start(), rough_floor());
-    const auto first = make_body(swings, settings), second = make_body(swings, settings);
+    const auto first = make_body(swings, second_order()), second = make_body(swings, second_order());
     for (int k = 0; k < 6; ++k) {
         if (k % 2 == 1) {
             second->refuse_steps_beyond(1e-12);
@@ -350,12 +353,9 @@ TEST_F(DeviceBodyTest, GoesOnAsIfARefusedStepHadNotBeenTried)
 
 TEST_F(DeviceBodyTest, HasTheSameBitsOfNewtonEveryTime)
 {
-    DeviceBody::Settings settings;
-    settings.outer = OuterMethod::Newton;
-    settings.integrator = Integrator::Bdf2;
     const Swings swings(3);
     TouchingPlane plane(swings.start(), rough_floor());
-    const auto first = make_body(swings, settings), second = make_body(swings, settings);
+    const auto first = make_body(swings, second_order()), second = make_body(swings, second_order());
     for (int k = 0; k < 8; ++k) {
         step(*first, swings, k > 3 ? &plane : nullptr);
         step(*second, swings, k > 3 ? &plane : nullptr);
