@@ -24,7 +24,7 @@ void ImpactZones::reset(View<const Vec3> displacements, View<const Support> supp
         sum_.resize(displacements.size());
         common_.resize(displacements.size());
     }
-    for (VertexSet* set : {&active_, &outdated_, &redirected_, &limited_, &renewed_, &changed_})
+    for (VertexSet* set : {&active_, &redirected_, &limited_, &renewed_, &changed_})
         set->reset(displacements.size());
 }
 
@@ -61,7 +61,7 @@ void ImpactZones::shorten_path(int v)
     }
 }
 
-void ImpactZones::unite(int a, int b, bool at_once)
+void ImpactZones::join(int a, int b)
 {
     shorten_path(a);
     shorten_path(b);
@@ -70,22 +70,11 @@ void ImpactZones::unite(int a, int b, bool at_once)
         return;
     activate(root);
     activate(child);
-    // A single vertex that changes only the mean can wait.
-    const bool is_root_alone = next_[root] == root, is_child_alone = next_[child] == child;
-    const Support of_root = sum_[root].support, of_child = sum_[child].support;
-    const bool can_wait = is_root_alone != is_child_alone && std::max(of_root, of_child) != Support::kFixed &&
-                          (is_root_alone ? of_root <= of_child : of_child <= of_root);
-
     parent_[child] = root;
     std::swap(next_[root], next_[child]);
     add(sum_[root], sum_[child]);
-    if (at_once || !can_wait) {
-        go_on(root);
-        return;
-    }
-    if (is_root_alone)
-        common_[root] = common_[child];
-    outdated_.add(root);
+    common_[root] = common_of(sum_[root]);
+    redirected_.add(root);
 }
 
 void ImpactZones::add(Sum& sum, const Sum& other) const
@@ -112,32 +101,11 @@ Vec3 ImpactZones::common_of(const Sum& sum) const
     return common.norm() < slow_ ? Vec3(Vec3::Zero()) : common;
 }
 
-/// Updates the displacement of a zone from its sum.
-void ImpactZones::go_on(int root)
-{
-    common_[root] = common_of(sum_[root]);
-    redirected_.add(root);
-}
-
-void ImpactZones::limit_to(int v, double fraction)
+void ImpactZones::limit_by(int v, double factor)
 {
     activate(v);
-    next_fraction_[v] = std::min(next_fraction_[v], fraction);
+    next_fraction_[v] = std::min(next_fraction_[v], factor * fraction_[v]);
     limited_.add(v);
-}
-
-bool ImpactZones::update()
-{
-    bool any = false;
-    for (const int former : outdated_.items()) {
-        const int root = zone(former);
-        if (common_[root] == common_of(sum_[root]))
-            continue;
-        go_on(root);
-        any = true;
-    }
-    outdated_.clear();
-    return any;
 }
 
 /// Shortens paths here, because motion() must not.

@@ -30,25 +30,17 @@ public:
     void set_body(int v, const Vec3& displacement, double weight);
 
     /// Merges the zones of two vertices.
-    void join(int a, int b) { unite(a, b, true); }
-    /// Merges likewise; but if one zone is a single vertex, the other keeps its displacement until update().
-    /// A zone that grows vertex by vertex thus need not move each time.
-    void attach(int a, int b) { unite(a, b, false); }
+    void join(int a, int b);
 
-    /// Bounds the fraction of v from close_pass() on: by `factor` times the current one, or by `fraction`.
-    void limit_by(int v, double factor) { limit_to(v, factor * fraction_[v]); }
-    void limit_to(int v, double fraction);
+    /// Bounds the fraction of v, from close_pass() on, by `factor` times the current one.
+    void limit_by(int v, double factor);
 
-    /// Updates the displacements of zones grown by attach(). False if none changes.
-    bool update();
     /// Applies the bounds of the pass. Returns the vertices whose motion may have changed since the last
     /// call; borrowed until the next.
     View<const int> close_pass();
     bool has_changed(int v) const { return changed_.has(v); } ///< v is among these
 
     double fraction(int v) const { return fraction_[v]; } ///< [-]
-    /// True if the zone of v is supported by a body.
-    bool is_supported(int v) const { return sum_of(zone(v)).support == Support::kSupported; }
 
     Vec3 common(int v) const; ///< displacement of the zone of v [m]
     Vec3 motion(int v) const; ///< displacement of v, a vertex of cloth [m]
@@ -65,11 +57,9 @@ private:
     int zone(int v) const;
     void shorten_path(int v);
     void activate(int v);
-    void unite(int a, int b, bool at_once);
     void add(Sum& sum, const Sum& other) const;
     Sum sum_of(int root) const;
     Vec3 common_of(const Sum& sum) const;
-    void go_on(int root);
 
     double slow_ = 0.0; ///< [m]
     View<const Vec3> displacements_;
@@ -80,8 +70,7 @@ private:
     std::vector<int> next_;                        ///< [vertices] of the same zone, in a ring
     std::vector<Sum> sum_;                         ///< [vertices] of active roots
     std::vector<Vec3> common_;                     ///< [vertices] displacement of active roots [m]
-    VertexSet outdated_;          ///< roots, some of them former ones, whose common_ is older than their sum
-    VertexSet redirected_;        ///< roots whose common_ has changed since the last pass
+    VertexSet redirected_;        ///< roots, some of them former ones, renewed since the last pass
     VertexSet limited_;           ///< vertices bounded since the last pass
     VertexSet renewed_, changed_; ///< by the last pass: roots; vertices
 };

@@ -25,25 +25,25 @@ constexpr double kMinGapFactor = 1.1;
 /// Displacement, relative to max_deflection [-], below which cloth is slow.
 constexpr double kSlow = 0.5;
 
-/// Excess length of an edge with a limited end, relative to max_deflection [-].
-constexpr double kEdgeStretch = 0.2;
+/// Length below which an edge is short, relative to max_deflection [-].
+constexpr double kShortEdge = 0.2;
 
 /// Largest deviation of a vertex that widens the search for its pairs, relative to max_deflection [-]: half a
 /// mean edge, so that pairs are searched within a quarter of an edge. Wider searches are as many, and find
 /// more pairs by the cube of edges.
 constexpr double kMaxDeviation = 5.0;
 
-/// Passes that limit the vertices of a pair or sliver in proportion. Vertices still blocked afterwards move
+/// Passes that limit the vertices of a pair or short edge in proportion. Vertices still blocked afterwards move
 /// with their zone.
 constexpr int kPasses = 16;
 
 /// Edges of cloth.
-std::vector<EdgeStretchLimiter::Edge> flexible_edges(const SurfaceEdges& edges,
+std::vector<ShortEdges::Edge> flexible_edges(const SurfaceEdges& edges,
                                                      const RigidTrajectories& bodies, int first_prescribed)
 {
-    std::vector<EdgeStretchLimiter::Edge> flexible;
+    std::vector<ShortEdges::Edge> flexible;
     std::copy_if(edges.vertex.begin(), edges.vertex.end(), std::back_inserter(flexible),
-                 [&](const EdgeStretchLimiter::Edge& edge) {
+                 [&](const ShortEdges::Edge& edge) {
                      return edge[0] < first_prescribed && !bodies.is_rigid(edge[0]);
                  });
     return flexible;
@@ -54,7 +54,7 @@ std::vector<EdgeStretchLimiter::Edge> flexible_edges(const SurfaceEdges& edges,
 TrajectoryLimiter::TrajectoryLimiter(const SurfaceEdges& edges, const Settings& settings,
                                      RigidTrajectories bodies)
     : settings_(settings), bodies_(std::move(bodies)),
-      stretch_limiter_(flexible_edges(edges, bodies_, settings.first_prescribed),
+      short_edges_(flexible_edges(edges, bodies_, settings.first_prescribed),
                        int(edges.corners_of_vertex.first.size()) - 1)
 {
 }
@@ -192,24 +192,23 @@ void TrajectoryLimiter::find_fractions(View<const unsigned char> supported)
     bodies_.begin(base_, displacement_);
     for (int body = 0; body < bodies_.count(); ++body)
         zones_.set_body(bodies_.leader(body), bodies_.move(body), bodies_.weight(body));
-    stretch_limiter_.begin(base_, displacement_, kEdgeStretch * settings_.max_deflection);
+    short_edges_.begin(base_, kShortEdge * settings_.max_deflection);
 
-    // Let the other ends of their slivers follow deflected vertices before pairs are limited.
+    // Let the other ends of their short edges follow deflected vertices before pairs are limited.
     for (const int v : deflected_.items())
         fresh_.add(v);
-    take_along();
+    keep_short_edges();
     for (int pass = 0; !blocked_.empty(); ++pass) {
         shorten(pass >= kPasses);
         follow_zones();
-        take_along();
+        keep_short_edges();
     }
 }
 
-/// Joins the ends of overstretched edges until there are none and all zones are up to date. Then updates the
-/// query.
-void TrajectoryLimiter::take_along()
+/// Joins the ends of short edges until none is overstretched. Then updates the query.
+void TrajectoryLimiter::keep_short_edges()
 {
-    for (int sweep = 0; limit_stretch(sweep >= kPasses) || zones_.update(); ++sweep)
+    for (int sweep = 0; shorten_edges(sweep >= kPasses); ++sweep)
         follow_zones();
     if (!stale_.is_empty())
         update_query();
@@ -257,40 +256,19 @@ void TrajectoryLimiter::go(int v, const Vec3& motion)
         set->add(v);
 }
 
-/// Joins the ends of overstretched edges. False if there are none. Except in slivers, cloth on bodies neither
-/// follows nor is followed: a zone from one leg to the other would draw it through both.
-bool TrajectoryLimiter::limit_stretch(bool for_good)
+/// Joins and limits the ends of overstretched short edges. False if there are none.
+bool TrajectoryLimiter::shorten_edges(bool for_good)
 {
-    stretch_limiter_.find_overstretched(fresh_.items(), motion_, overstretched_);
+    short_edges_.find_overstretched(fresh_.items(), motion_, overstretched_);
     fresh_.clear();
-    bool any = false;
     for (const int e : overstretched_) {
-        const auto [a, b] = stretch_limiter_.edges()[e];
-        if (stretch_limiter_.is_sliver(e)) {
-            const double fraction = for_good ? 0.0 : kTaken * stretch_limiter_.fraction(e, motion_);
-            zones_.join(a, b);
-            zones_.limit_by(a, fraction);
-            zones_.limit_by(b, fraction);
-            any = true;
-        } else if (!zones_.is_supported(a) && !zones_.is_supported(b)) {
-            limit_trailing_end(e);
-            any = true;
-        }
+        const auto [a, b] = short_edges_.edges()[e];
+        const double fraction = for_good ? 0.0 : kTaken * short_edges_.fraction(e, motion_);
+        zones_.join(a, b);
+        zones_.limit_by(a, fraction);
+        zones_.limit_by(b, fraction);
     }
-    return any;
-}
-
-/// Joins the zones of an overstretched edge's ends. The end with the larger fraction keeps only as much of
-/// its displacement as the edge allows. The remaining stretch is left to the next edge: several rings of
-/// edges follow a stopped vertex, and each stretches a little.
-void TrajectoryLimiter::limit_trailing_end(int edge)
-{
-    const auto [a, b] = stretch_limiter_.edges()[edge];
-    zones_.attach(a, b);
-    const auto [lead, last] = zones_.fraction(a) <= zones_.fraction(b) ? std::pair(a, b) : std::pair(b, a);
-    const double min_fraction = zones_.fraction(lead);
-    const double fraction = stretch_limiter_.trailing_fraction(edge, last, zones_.common(lead), min_fraction);
-    zones_.limit_to(last, min_fraction + kTaken * (fraction - min_fraction));
+    return !overstretched_.empty();
 }
 
 } // namespace toile::collision

@@ -5,9 +5,9 @@
 
 #include "collision/ccd/ccd_query.h"
 #include "collision/ccd/collision_free_step_kernels.h"
-#include "collision/ccd/edge_stretch_limiter.h"
 #include "collision/ccd/impact_zones.h"
 #include "collision/ccd/rigid_trajectories.h"
+#include "collision/ccd/short_edges.h"
 
 namespace toile::collision {
 
@@ -20,7 +20,7 @@ public:
         MinGap gap;            ///< of pairs
         double max_deflection; ///< [m] CollisionFreeStep::Settings
 
-        /// All vertices from this one on belong to bodies, whose edges do not stretch.
+        /// All vertices from this one on belong to bodies, whose motion is prescribed.
         int first_prescribed = std::numeric_limits<int>::max();
 
         /// Slow cloth is stopped rather than deflected or moved by its zone: resting cloth would creep.
@@ -56,16 +56,15 @@ private:
     bool may_deflect(int v) const { return !fixed_[v] && !bodies_.is_rigid(v); }
     void find_fractions(View<const unsigned char> supported);
     void shorten(bool for_good);
-    void take_along();
+    void keep_short_edges();
     void follow_zones();
     void go(int v, const Vec3& motion);
-    bool limit_stretch(bool for_good);
-    void limit_trailing_end(int edge);
+    bool shorten_edges(bool for_good);
     double finish(View<Vec3> x) const;
 
     Settings settings_;
     RigidTrajectories bodies_;
-    EdgeStretchLimiter stretch_limiter_; ///< edges of cloth
+    ShortEdges short_edges_; ///< of cloth
     View<const Vec3> base_;
     View<const unsigned char> fixed_;
 
@@ -80,7 +79,7 @@ private:
     VertexSet moved_;                ///< motion_ differs from the requested displacement
     VertexSet stale_;                ///< motion_ has changed since the last update
     VertexSet fresh_;                ///< motion_ has changed since edges were tested
-    std::vector<int> overstretched_; ///< edges of stretch_limiter_
+    std::vector<int> overstretched_; ///< edges of short_edges_
     std::vector<Vec3> body_motion_;  ///< of one body's vertices [m]
     std::vector<ChangedTrajectory> changes_;
 };

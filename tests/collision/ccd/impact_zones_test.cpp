@@ -67,30 +67,6 @@ TEST(ImpactZones, ScaleMotionByFractionsInsideTheZoneOnly)
     EXPECT_EQ(zones.fraction(0), 0.25);
 }
 
-TEST(ImpactZones, KeepTheirDirectionUntilUpdatedWhenVerticesJoin)
-{
-    const std::vector<Vec3> displacements{Vec3(4, 0, 0), Vec3(0, 0, 0), Vec3(0, 9, 0), Vec3(0, 0, 5)};
-    ImpactZones zones;
-    zones.reset(displacements,
-                std::vector<Support>{Support::kNone, Support::kNone, Support::kNone, Support::kSupported},
-                0.0);
-    zones.join(0, 1);
-    zones.attach(2, 0);
-    zones.limit_to(1, 0.0);
-    zones.close_pass();
-    EXPECT_EQ(zones.common(2), Vec3(2, 0, 0));
-    EXPECT_TRUE(zones.update());
-    EXPECT_FALSE(zones.update());
-    EXPECT_EQ(zones.close_pass().size(), 3);
-    EXPECT_EQ(zones.motion(1), Vec3(4.0 / 3.0, 3, 0));
-
-    // The displacement of more strongly supported vertices applies at once.
-    zones.attach(3, 0);
-    EXPECT_TRUE(zones.is_supported(0));
-    EXPECT_EQ(zones.common(0), displacements[3]);
-    EXPECT_FALSE(zones.update());
-}
-
 TEST(ImpactZones, ForgetJoinsOnReset)
 {
     const std::vector<Vec3> displacements{Vec3(4, 0, 0), Vec3(0, 0, 0)};
