@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -120,12 +121,23 @@ std::vector<InsideSample> BodyClearing::inside(View<const Vec3> x, double depth)
     return samples_below(x, [&](const InsideSample&) { return -depth; });
 }
 
-std::vector<InsideSample> BodyClearing::movable_below(View<const Vec3> x, Limit limit) const
+std::vector<int> BodyClearing::nearer(View<const Vec3> x, double fraction) const
+{
+    std::vector<int> near;
+    for (const InsideSample& sample : movable_below(x, fraction))
+        std::copy_if(sample.vertex.begin(), sample.vertex.end(), std::back_inserter(near),
+                     [&](int v) { return v >= 0 && cloths_.fixed[v] == 0; });
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    return near;
+}
+
+/// Samples that can move, nearer to a body than a fraction of their gap [-].
+std::vector<InsideSample> BodyClearing::movable_below(View<const Vec3> x, double gap_fraction) const
 {
     return samples_below(x, [&](const InsideSample& sample) {
-        if (!can_move(sample.vertex))
-            return -std::numeric_limits<double>::infinity();
-        return limit == Limit::Gap ? cloths_.gap[sample.vertex[0]] : 0.0;
+        return can_move(sample.vertex) ? gap_fraction * cloths_.gap[sample.vertex[0]]
+                                       : -std::numeric_limits<double>::infinity();
     });
 }
 
@@ -182,11 +194,11 @@ std::vector<InsideSample> BodyClearing::samples_below(View<const Vec3> x, const 
 void BodyClearing::grow(View<Vec3> x, const ShapeKeeper& keeper, const RepairProgress& progress) const
 {
     double deepest = 0.0;
-    for (const InsideSample& sample : movable_below(x, Limit::Surface))
+    for (const InsideSample& sample : movable_below(x, 0.0))
         deepest = std::max(deepest, -sample.proximity.signed_distance);
     const int increments = std::clamp(int(std::ceil(deepest / kIncrement)), 1, kMaxIncrements);
     for (int k = 0; k < increments; ++k) {
-        const std::vector<InsideSample> samples = movable_below(x, Limit::Surface);
+        const std::vector<InsideSample> samples = movable_below(x, 0.0);
         if (samples.empty())
             return;
         displace(x, samples, 1.0 / (increments - k));
@@ -234,7 +246,7 @@ void BodyClearing::displace(View<Vec3> x, const std::vector<InsideSample>& insid
 void BodyClearing::project(View<Vec3> x) const
 {
     std::vector<Vec3> move(x.size(), Vec3::Zero());
-    for (const InsideSample& sample : movable_below(x, Limit::Gap)) {
+    for (const InsideSample& sample : movable_below(x, 1.0)) {
         const double depth = cloths_.gap[sample.vertex[0]] - sample.proximity.signed_distance;
         add_move(sample.vertex, depth, sample.proximity.normal, cloths_.fixed, move);
     }

@@ -36,6 +36,9 @@ public:
     /// vertices.
     std::vector<InsideSample> inside(View<const Vec3> x, double depth) const;
 
+    /// Vertices, ascending and not fixed, of samples that are nearer to a body than `fraction` of their gap.
+    std::vector<int> nearer(View<const Vec3> x, double fraction) const;
+
     /// Triangles that cross or touch the surface of a body, by the exact test. Left out are faces of a body
     /// that lie inside another part of it.
     std::vector<SurfaceCrossing> crossings(View<const Vec3> x) const { return crossings(x, Which::All); }
@@ -55,7 +58,6 @@ public:
     bool push_off_crossings(View<Vec3> x, std::vector<double>& pushed) const;
 
 private:
-    enum class Limit { Surface, Gap };
     enum class Which { All, Movable };
     std::vector<SurfaceCrossing> crossings(View<const Vec3> x, Which which) const;
     void add_surface(int body, View<const Triangle> triangles, View<const Vec3> x);
@@ -63,7 +65,7 @@ private:
     bool can_move(const std::array<int, 3>& vertices) const;
     InsideSample sample_at(View<const Vec3> x, int index) const;
     std::array<int, 3> corners_of(int triangle) const;
-    std::vector<InsideSample> movable_below(View<const Vec3> x, Limit limit) const;
+    std::vector<InsideSample> movable_below(View<const Vec3> x, double gap_fraction) const;
     template <typename Bound>
     std::vector<InsideSample> samples_below(View<const Vec3> x, const Bound& bound) const;
     void displace(View<Vec3> x, const std::vector<InsideSample>& inside, double fraction) const;

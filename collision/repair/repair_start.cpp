@@ -19,6 +19,9 @@ namespace {
 /// Depth [m] above which a point counts as inside a body; at smaller depths it touches.
 constexpr double kTouchDepth = 1e-6;
 
+/// Part of the gap to a body [-] below which contact would throw cloth off.
+constexpr double kNear = 0.75;
+
 /// Maximum number of passes: growing bodies and untangling may partly undo each other.
 constexpr int kMaxPasses = 4;
 
@@ -176,16 +179,27 @@ std::vector<StartReport::Change> changes_of(const JoinedCloths& cloths, View<con
     return changes;
 }
 
+/// See StartReport::too_near.
+std::vector<std::vector<int>> too_near(const JoinedCloths& cloths, const BodyClearing& clearing,
+                                       View<const Vec3> x)
+{
+    std::vector<std::vector<int>> near(cloths.first_vertex.size() - 1);
+    for (const int v : clearing.nearer(x, kNear))
+        near[cloths.cloth[v]].push_back(v - cloths.first_vertex[cloths.cloth[v]]);
+    return near;
+}
+
 } // namespace
 
 StartReport check_start(const std::vector<StartCloth>& cloths, const std::vector<ContactCollider>& bodies)
 {
     const JoinedCloths joined(cloths);
+    const BodyClearing clearing(joined, bodies);
     StartReport report;
     report.edge_count = joined.edges.edge_count();
     report.changes.resize(cloths.size());
-    for (const auto& [key, defect] :
-         Faults(joined, bodies, BodyClearing(joined, bodies), joined.start).defects)
+    report.too_near = too_near(joined, clearing, joined.start);
+    for (const auto& [key, defect] : Faults(joined, bodies, clearing, joined.start).defects)
         report.defects.push_back(defect);
     return report;
 }
@@ -223,6 +237,7 @@ StartReport repair_start(std::vector<StartCloth>& cloths, const std::vector<Cont
     progress.update(1.0);
     compare(before, best, report);
     report.changes = changes_of(joined, best_x);
+    report.too_near = too_near(joined, clearing, best_x);
     const EdgeStrain strain = edge_strain(joined, best_x);
     report.max_strain = strain.max;
     report.rms_strain = strain.rms;

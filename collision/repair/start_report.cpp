@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace toile::collision {
 
@@ -9,6 +10,7 @@ void StartReport::append(const StartReport& other)
 {
     defects.insert(defects.end(), other.defects.begin(), other.defects.end());
     changes.insert(changes.end(), other.changes.begin(), other.changes.end());
+    too_near.insert(too_near.end(), other.too_near.begin(), other.too_near.end());
     was_repaired = was_repaired || other.was_repaired;
     passes = std::max(passes, other.passes);
     max_strain = std::max(max_strain, other.max_strain);
@@ -37,6 +39,12 @@ int StartReport::vertices_inside() const
     return int(std::count_if(defects.begin(), defects.end(), [&](const StartDefect& defect) {
         return defect.kind == StartDefect::Kind::InsideBody && defect.vertex[1] < 0;
     }));
+}
+
+int StartReport::vertices_too_near() const
+{
+    return std::accumulate(too_near.begin(), too_near.end(), 0,
+                           [](int sum, const std::vector<int>& of_cloth) { return sum + int(of_cloth.size()); });
 }
 
 double StartReport::deepest(StartDefect::Kind kind) const

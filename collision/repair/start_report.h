@@ -48,6 +48,10 @@ struct StartReport {
     };
     std::vector<Change> changes; ///< [cloths]
 
+    /// [cloths] Vertices, ascending, that are nearer to a body than 0.75 of their gap, and not fixed: contact
+    /// would throw them off in the first step. After the repair, if there was one.
+    std::vector<std::vector<int>> too_near;
+
     /// Adds the report of other cloths of the pose.
     void append(const StartReport& other);
 
@@ -57,6 +61,7 @@ struct StartReport {
 
     /// Number of vertices that began inside a body; defects count edges and triangles too.
     int vertices_inside() const;
+    int vertices_too_near() const;
     double deepest(StartDefect::Kind kind) const; ///< [m] maximum over all defects of a kind; 0 if none
 
     /// True if no defect could be repaired by moving cloth: all are fixed.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -249,20 +250,32 @@ StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>
     TOILE_ASSERT(!solids_);
     constexpr double kAtRest = 1.0; // [m/s^2] of all vertices: a tenth of gravity
     const std::vector<Vec3> velocities(body_->velocities().begin(), body_->velocities().end());
-    const std::vector<Vec3> start = is_deformed_ ? surfaces() : std::vector<Vec3>();
+    const std::vector<Vec3> start = is_unsettled() ? surfaces() : std::vector<Vec3>();
     body_->set_velocities(std::vector<Vec3>(velocities.size(), Vec3::Zero()));
     is_relaxing_ = true;
     StepReport report = step(dt, t_t1, colliders, kAnyStepError);
     is_relaxing_ = false;
     forget_rest(); // it is not that of a body with weight
     body_->set_velocities(velocities);
-    if (is_deformed_) {
+    if (is_unsettled()) {
         const std::vector<Vec3> x = surfaces();
-        is_deformed_ =
-            !std::equal(x.begin() + first_.back(), x.end(), start.begin() + first_.back(),
-                        [dt](const Vec3& a, const Vec3& b) { return (a - b).norm() < kAtRest * dt * dt; });
+        if (std::all_of(unsettled_.begin(), unsettled_.end(),
+                        [&](int v) { return (x[v] - start[v]).norm() < kAtRest * dt * dt; }))
+            unsettled_.clear();
     }
     return report;
+}
+
+void ClothGroup::unsettle(int cloth, View<const int> vertices)
+{
+    std::transform(vertices.begin(), vertices.end(), std::back_inserter(unsettled_),
+                   [&](int v) { return first_[cloth] + v; });
+}
+
+void ClothGroup::unsettle_soft_body(int body)
+{
+    const std::vector<int> unknowns = soft_bodies_->unknowns(body);
+    unsettled_.insert(unsettled_.end(), unknowns.begin(), unknowns.end());
 }
 
 /// Vertex 12 of "skirt" near (0.100, 0.900, 0.020) m, by "hips" of "woman".
@@ -432,12 +445,14 @@ void ClothGroup::place(int cloth, View<const Vec3> positions)
 void ClothGroup::place_soft_bodies(const std::vector<std::vector<Vec3>>& surfaces)
 {
     std::vector<Vec3> all(body_->positions().begin(), body_->positions().end());
+    bool any = false;
     for (int i = 0; i < int(surfaces.size()); ++i)
         if (surfaces[i] != soft_bodies_->state(i).positions) {
             soft_bodies_->place(i, surfaces[i], all);
-            is_deformed_ = true;
+            unsettle_soft_body(i);
+            any = true;
         }
-    if (is_deformed_)
+    if (any)
         restart_from(all);
 }
 

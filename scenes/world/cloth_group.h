@@ -59,8 +59,13 @@ public:
     /// True if cloth is strained beyond its limit.
     bool is_strained() const;
 
-    /// True while relax() still moves soft bodies that place_soft_bodies() has deformed.
-    bool is_deformed() const { return is_deformed_; }
+    /// Lets relax_start() go on until vertices of a cloth rest, or the soft body `body`.
+    void unsettle(int cloth, View<const int> vertices);
+    void unsettle_soft_body(int body);
+
+    /// True while relax() still moves unsettled vertices, or soft bodies that place_soft_bodies() has
+    /// deformed.
+    bool is_unsettled() const { return !unsettled_.empty(); }
 
     /// Takes a step from rest, without gravity and air: cloth and soft bodies relax and go nowhere.
     /// Velocities stay. Not for a group with solids.
@@ -134,7 +139,7 @@ private:
         surface_contact_; ///< the same in all unknowns; null without soft bodies
     std::unique_ptr<PointMasses> body_;
     bool is_relaxing_ = false;              ///< within relax()
-    bool is_deformed_ = false;              ///< see is_deformed()
+    std::vector<int> unsettled_;            ///< vertices; see is_unsettled()
     garment::DeviceLoads* loads_ = nullptr; ///< owned by body_, on a GPU; null: accelerate()
     std::vector<unsigned char> fixed_;
     std::vector<Vec3> targets_, acceleration_;

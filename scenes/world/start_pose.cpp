@@ -236,6 +236,18 @@ void place(const std::vector<collision::StartCloth>& cloths,
     groups.front().place_soft_bodies(surfaces);
 }
 
+/// Lets the groups move off bodies what is too near to them.
+void unsettle(const collision::StartReport& report, std::vector<ClothGroup>& groups)
+{
+    auto near = report.too_near.begin();
+    for (ClothGroup& group : groups)
+        for (int i = 0; i < int(group.cloths().size()); ++i, ++near)
+            group.unsettle(i, *near);
+    for (int i = 0; near != report.too_near.end(); ++i, ++near)
+        if (!near->empty())
+            groups.front().unsettle_soft_body(i);
+}
+
 } // namespace
 
 std::string NamedPart::quoted() const { return kind + (" \"" + name) + "\""; }
@@ -273,6 +285,8 @@ collision::StartReport repair_start_pose(const Scene& scene, std::vector<ClothGr
     require_fit(scene, report);
     if (report.was_repaired)
         place(cloths, soft_bodies, groups);
+    if (scene.contact.repair_start)
+        unsettle(report, groups);
     using Kind = collision::StartDefect::Kind;
     if (report.remaining(Kind::Crossing) == 0 && report.remaining(Kind::CrossesBody) == 0)
         for (ClothGroup& group : groups)

@@ -204,9 +204,17 @@ struct World::Parts {
                            [](const ClothState& state) { return !state.panels.empty(); });
     }
 
+    /// True if relax_start() may move something.
+    bool must_relax() const
+    {
+        return start.was_repaired || may_start_strained() ||
+               std::any_of(groups.begin(), groups.end(),
+                           [](const ClothGroup& group) { return group.is_unsettled(); });
+    }
+
     /// Relaxes cloth that the start pose or its repair strain beyond its limit, as long as the strain falls,
-    /// and soft bodies that the repair has deformed. Those that share their group with solids do so in the
-    /// first steps.
+    /// soft bodies that the repair has deformed, and what starts so near to a body that contact would throw it
+    /// off. Those that share their group with solids do so in the first steps.
     StepReport relax_start()
     {
         constexpr int kMinSteps = 60, kPatience = 5;
@@ -219,7 +227,7 @@ struct World::Parts {
             double min_strain = std::numeric_limits<double>::max();
             int stalled = 0;
             for (int k = 0; k < max_steps && !group.has_solids() &&
-                            (group.is_deformed() || (stalled < kPatience && group.is_strained()));
+                            (group.is_unsettled() || (stalled < kPatience && group.is_strained()));
                  ++k) {
                 const StageScope stage("scenes/relax_start");
                 const StepReport report = group.relax(dt, t_start, colliders);
@@ -346,10 +354,11 @@ World::World(const Scene& scene, const WorldOptions& options)
         parts_->tell("repair of the start pose", fraction);
     });
     for (const ClothGroup& group : parts_->groups)
-        if (group.is_deformed() && group.has_solids() && options.warn)
+        if (group.is_unsettled() && group.has_solids() && options.warn)
             options.warn(scene.source.string() +
-                         ": the repair of the start pose has deformed soft bodies, which spring "
-                         "back in the first steps; without solids in the scene they would relax first");
+                         ": soft bodies that the repair of the start pose has deformed, and what starts nearer "
+                         "to a body than contact.gap, spring off in the first steps; without solids in the "
+                         "scene they would relax first");
     for (ClothGroup& group : parts_->groups)
         group.tie(scene.contact.gap, parts_->colliders, options.warn);
     for (const ClothGroup& group : parts_->groups)
@@ -422,7 +431,7 @@ StepReport World::settle()
     if (parts().frame > 0)
         throw InvalidUse("World::settle: sample 0 is past");
     return call.take([&] {
-        if (parts().start.was_repaired || parts().may_start_strained()) {
+        if (parts().must_relax()) {
             const ThreadLimit threads(parts().scene.solver.threads);
             const Stages::Activate recording(parts().stages);
             if (StepReport report = parts().relax_start(); report.status == StepReport::Status::NonFinite)

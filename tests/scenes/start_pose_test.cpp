@@ -38,7 +38,27 @@ TEST(StartPose, IsOnlyCheckedInACleanScene)
     EXPECT_EQ(world.stages().calls("scenes/start_check"), 1);
     EXPECT_EQ(world.stages().calls("scenes/start_repair"), 0);
     EXPECT_TRUE(world.start().defects.empty());
+    EXPECT_EQ(world.start().vertices_too_near(), 0);
     EXPECT_EQ(world.cloths()[0].positions, world.cloths()[0].rest.positions);
+    world.settle();
+    EXPECT_EQ(world.stages().calls("scenes/relax_start"), 0);
+}
+
+/// Contact would throw cloth modelled at the height of its table up by 41 mm.
+TEST(StartPose, IsMovedOffATableBeforeTheFirstStep)
+{
+    World world(scene_of(R"("contact": {"gap": 0.005}, "avatars": [{"name": "table", "plane": {}}],
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.2, 0.2], "resolution": 0.02}}])"));
+    EXPECT_EQ(world.start().vertices_too_near(), int(world.cloths()[0].positions.size()));
+    EXPECT_FALSE(world.start().was_repaired);
+    world.settle();
+    for (;;) {
+        for (const Vec3& p : world.cloths()[0].positions)
+            EXPECT_NEAR(p.y(), 0.0051, 2e-4) << world.frame();
+        if (world.frame() == 2)
+            break;
+        EXPECT_EQ(world.advance_frame().status, StepReport::Status::Converged);
+    }
 }
 
 TEST(StartPose, IsRepairedBeforeTheFirstStepAndKeepsTheRestShape)

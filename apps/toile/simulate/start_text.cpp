@@ -92,10 +92,15 @@ std::vector<collision::StartDefect> deepest_remaining(const collision::StartRepo
 
 std::string start_text(const collision::StartReport& report, const scenes::Scene& scene)
 {
-    if (report.defects.empty())
-        return "";
     const bool has_soft_bodies = !scene.soft_bodies.empty();
     const std::string bodies = has_soft_bodies ? "avatars and soft bodies" : "avatars";
+    if (report.defects.empty()) {
+        const int near = report.vertices_too_near();
+        return near == 0 ? ""
+                         : "start pose: " + number_of(near, "vertex is", "vertices are") + " nearer to " +
+                               bodies + " than contact.gap; " +
+                               (scene.contact.repair_start ? "moved off before frame 0" : "left as it is");
+    }
     const std::string surface = has_soft_bodies ? "surfaces" : "cloth";
     std::string text = "start pose: " + number_of(report.vertices_inside(), "vertex", "vertices") + " (" +
                        number_of(report.count(Kind::InsideBody), "penetration", "penetrations") +
@@ -143,7 +148,8 @@ nlohmann::ordered_json start_json(const collision::StartReport& report, const sc
                                    {"max_depth_m", report.deepest(Kind::InsideBody)},
                                    {"max_strain", report.max_strain},
                                    {"rms_strain", report.rms_strain},
-                                   {"max_move_m", report.max_move}};
+                                   {"max_move_m", report.max_move},
+                                   {"vertices_too_near", report.vertices_too_near()}};
     nlohmann::ordered_json& defects = json["places"] = nlohmann::ordered_json::array();
     for (const collision::StartDefect& defect : report.defects) {
         const scenes::NamedPart other = other_of(defect, scene);

@@ -155,6 +155,43 @@ TEST_F(SoftStart, NamesWhatItNumbers)
     EXPECT_TRUE(found[0] > 0 && found[1] > 0 && found[2] > 0);
 }
 
+/// Contact would throw what starts nearer to a body than its gap: a stiff block on the floor by 65 mm.
+TEST_F(SoftStart, RestsOnTheFloorThatItStartsOn)
+{
+    const auto on_floor = [&](const std::string& more) {
+        return kFloor + R"("frames": 8, "contact": {"gap": 0.005)" + more + R"(}, "cloths": [],
+            "soft_bodies": [)" +
+               block("jelly", R"("young": 1e8)") + "]";
+    };
+    World world = world_of(on_floor(""));
+    EXPECT_TRUE(world.start().defects.empty());
+    EXPECT_GT(world.start().vertices_too_near(), 0);
+    EXPECT_EQ(world.stages().calls("scenes/start_repair"), 0);
+    world.settle();
+    EXPECT_GT(world.stages().calls("scenes/relax_start"), 0);
+    for (;;) {
+        EXPECT_NEAR(lowest(world.surfaces()[0].positions), 0.005, 2e-4) << world.frame();
+        if (world.frame() == 7)
+            break;
+        EXPECT_EQ(world.advance_frame().status, StepReport::Status::Converged);
+    }
+
+    World left = world_of(on_floor(R"(, "repair_start": false)"));
+    left.settle();
+    EXPECT_EQ(left.stages().calls("scenes/relax_start"), 0);
+    EXPECT_EQ(lowest(left.surfaces()[0].positions), 0.0);
+}
+
+TEST_F(SoftStart, KeepsItsVelocityWhereItStartsOnTheFloor)
+{
+    World world = world_of(kFloor + R"("frames": 2, "cloths": [], "soft_bodies": [)" +
+                           block("jelly", R"("velocity": [0, 2, 0])") + "]");
+    world.settle();
+    const double start = mean(world.surfaces()[0].positions).y();
+    world.advance_frame();
+    EXPECT_NEAR(mean(world.surfaces()[0].positions).y() - start, 2.0 / 30 - 0.5 * 9.81 / 900, 2e-3);
+}
+
 TEST_F(SoftStart, RelaxesInSmallStepsToo)
 {
     World world =
