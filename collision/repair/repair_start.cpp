@@ -179,7 +179,7 @@ std::vector<StartReport::Change> changes_of(const JoinedCloths& cloths, View<con
     return changes;
 }
 
-/// See StartReport::too_near.
+/// See find_too_near().
 std::vector<std::vector<int>> too_near(const JoinedCloths& cloths, const BodyClearing& clearing,
                                        View<const Vec3> x)
 {
@@ -202,6 +202,13 @@ StartReport check_start(const std::vector<StartCloth>& cloths, const std::vector
     for (const auto& [key, defect] : Faults(joined, bodies, clearing, joined.start).defects)
         report.defects.push_back(defect);
     return report;
+}
+
+std::vector<std::vector<int>> find_too_near(const std::vector<StartCloth>& cloths,
+                                            const std::vector<ContactCollider>& bodies)
+{
+    const JoinedCloths joined(cloths);
+    return too_near(joined, BodyClearing(joined, bodies), joined.start);
 }
 
 StartReport repair_start(std::vector<StartCloth>& cloths, const std::vector<ContactCollider>& bodies,

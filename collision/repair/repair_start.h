@@ -12,6 +12,11 @@ namespace toile::collision {
 /// Finds the defects of a start pose. Moves nothing. O(n log n).
 StartReport check_start(const std::vector<StartCloth>& cloths, const std::vector<ContactCollider>& bodies);
 
+/// [cloths] Vertices, ascending, that are nearer to a body than 0.75 of their gap, and not fixed: contact
+/// would throw them off in the first step.
+std::vector<std::vector<int>> find_too_near(const std::vector<StartCloth>& cloths,
+                                            const std::vector<ContactCollider>& bodies);
+
 /// Repairs a start pose by geometry alone (docs/theory/start_repair.md). Bodies grow from where all cloth is
 /// outside and advect it. Higher layers are moved outside lower ones, and cloth that crosses is untangled.
 /// The shape is restored as far as this creates no new defects. Triangles that cross a body's surface between

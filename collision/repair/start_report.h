@@ -48,8 +48,7 @@ struct StartReport {
     };
     std::vector<Change> changes; ///< [cloths]
 
-    /// [cloths] Vertices, ascending, that are nearer to a body than 0.75 of their gap, and not fixed: contact
-    /// would throw them off in the first step. After the repair, if there was one.
+    /// [cloths] See find_too_near(); after the repair, if there was one. Of a World solids follow.
     std::vector<std::vector<int>> too_near;
 
     /// Adds the report of other cloths of the pose.

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "collision/check/find_crossings.h"
@@ -143,11 +144,11 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
         loads_->set_step(t_t1, !is_relaxing_);
     else
         accelerate(dt, t_t1);
-    if (is_relaxing_)
-        std::fill(acceleration_.begin(), acceleration_.end(), Vec3::Zero());
     begin_solids(dt);
     body_->refuse_steps_beyond(max_error);
-    StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), limits_.get());
+    const std::vector<Vec3> weightless(is_relaxing_ ? acceleration_.size() : 0, Vec3::Zero());
+    StepReport report =
+        body_->step(dt, is_relaxing_ ? weightless : acceleration_, fixed_, targets_, active(), limits_.get());
     if (report.refused > 0)
         return report;
     may_cross_ =
@@ -247,14 +248,20 @@ bool ClothGroup::is_strained() const
 
 StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>& colliders)
 {
-    TOILE_ASSERT(!solids_);
     constexpr double kAtRest = 1.0; // [m/s^2] of all vertices: a tenth of gravity
     const std::vector<Vec3> velocities(body_->velocities().begin(), body_->velocities().end());
     const std::vector<Vec3> start = is_unsettled() ? surfaces() : std::vector<Vec3>();
     body_->set_velocities(std::vector<Vec3>(velocities.size(), Vec3::Zero()));
+    std::vector<RigidBodies::Motion> of_solids;
+    if (solids_) {
+        of_solids = solids_->bodies().motions();
+        solids_->bodies().set_motions(std::vector<RigidBodies::Motion>(of_solids.size()));
+    }
     is_relaxing_ = true;
     StepReport report = step(dt, t_t1, colliders, kAnyStepError);
     is_relaxing_ = false;
+    if (solids_)
+        solids_->bodies().set_motions(of_solids);
     forget_rest(); // it is not that of a body with weight
     body_->set_velocities(velocities);
     if (is_unsettled()) {
@@ -274,8 +281,20 @@ void ClothGroup::unsettle(int cloth, View<const int> vertices)
 
 void ClothGroup::unsettle_soft_body(int body)
 {
-    const std::vector<int> unknowns = soft_bodies_->unknowns(body);
-    unsettled_.insert(unsettled_.end(), unknowns.begin(), unknowns.end());
+    unsettle_surface(soft_bodies_->first_vertex(body), soft_bodies_->state(body).positions.size());
+}
+
+void ClothGroup::unsettle_solid(int solid)
+{
+    unsettle_surface(first_solid_ + solids_->bodies().first_vertex(solid),
+                     solids_->state(solid).positions.size());
+}
+
+/// @param first  of surfaces()
+void ClothGroup::unsettle_surface(int first, size_t count)
+{
+    unsettled_.resize(unsettled_.size() + count);
+    std::iota(unsettled_.end() - std::ptrdiff_t(count), unsettled_.end(), first);
 }
 
 /// Vertex 12 of "skirt" near (0.100, 0.900, 0.020) m, by "hips" of "woman".

@@ -59,18 +59,17 @@ public:
     /// True if cloth is strained beyond its limit.
     bool is_strained() const;
 
-    /// Lets relax_start() go on until vertices of a cloth rest, or the soft body `body`.
+    /// Lets relaxation at the start go on until vertices of a cloth rest, or a soft body, or a solid.
     void unsettle(int cloth, View<const int> vertices);
     void unsettle_soft_body(int body);
+    void unsettle_solid(int solid);
 
     /// True while relax() still moves unsettled vertices, or soft bodies that place_soft_bodies() has
     /// deformed.
     bool is_unsettled() const { return !unsettled_.empty(); }
 
-    /// Takes a step from rest, without gravity and air: cloth and soft bodies relax and go nowhere.
-    /// Velocities stay. Not for a group with solids.
+    /// Takes a step from rest, without gravity and air: everything relaxes and goes nowhere. Velocities stay.
     StepReport relax(double dt, double t_t1, const std::vector<Collider>& colliders);
-    bool has_solids() const { return solids_ != nullptr; }
 
     /// Declares that no cloth crosses cloth in the start pose: the first step skips that search, unless there
     /// are solids, which cloth may cross.
@@ -113,6 +112,7 @@ private:
     ActiveSetEnergy* active() const;
     void begin_solids(double dt);
     void end_solids();
+    void unsettle_surface(int first, size_t count);
     void mark_crossings();
     std::vector<unsigned char> mark_inside(const collision::BodySurfaces& bodies, View<const Vec3> x) const;
     int solid_of(int triangle) const;
@@ -139,7 +139,7 @@ private:
         surface_contact_; ///< the same in all unknowns; null without soft bodies
     std::unique_ptr<PointMasses> body_;
     bool is_relaxing_ = false;              ///< within relax()
-    std::vector<int> unsettled_;            ///< vertices; see is_unsettled()
+    std::vector<int> unsettled_;            ///< of surfaces(); see is_unsettled()
     garment::DeviceLoads* loads_ = nullptr; ///< owned by body_, on a GPU; null: accelerate()
     std::vector<unsigned char> fixed_;
     std::vector<Vec3> targets_, acceleration_;

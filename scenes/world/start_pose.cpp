@@ -236,16 +236,34 @@ void place(const std::vector<collision::StartCloth>& cloths,
     groups.front().place_soft_bodies(surfaces);
 }
 
-/// Lets the groups move off bodies what is too near to them.
-void unsettle(const collision::StartReport& report, std::vector<ClothGroup>& groups)
+/// Surfaces of solids.
+std::vector<collision::StartCloth> starts_of(const Scene& scene, const SceneSolids& solids)
 {
-    auto near = report.too_near.begin();
+    std::vector<collision::StartCloth> starts(solids.count());
+    for (int i = 0; i < int(starts.size()); ++i) {
+        starts[i].triangles = solids.state(i).triangles;
+        starts[i].positions = solids.state(i).positions;
+        starts[i].thickness = starts[i].gap = skin_of_body(scene);
+    }
+    return starts;
+}
+
+/// Lets the groups move off bodies what is too near to them.
+/// @param near  vertices of cloths, then of soft bodies, then of solids
+void unsettle(const std::vector<std::vector<int>>& near, std::vector<ClothGroup>& groups)
+{
+    auto of = near.begin();
     for (ClothGroup& group : groups)
-        for (int i = 0; i < int(group.cloths().size()); ++i, ++near)
-            group.unsettle(i, *near);
-    for (int i = 0; near != report.too_near.end(); ++i, ++near)
-        if (!near->empty())
-            groups.front().unsettle_soft_body(i);
+        for (int i = 0; i < int(group.cloths().size()); ++i, ++of)
+            group.unsettle(i, *of);
+    for (ClothGroup& group : groups)
+        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i, ++of)
+            if (!of->empty())
+                group.unsettle_soft_body(i);
+    for (ClothGroup& group : groups)
+        for (int i = 0; group.solids() && i < group.solids()->count(); ++i, ++of)
+            if (!of->empty())
+                group.unsettle_solid(i);
 }
 
 } // namespace
@@ -283,10 +301,14 @@ collision::StartReport repair_start_pose(const Scene& scene, std::vector<ClothGr
                                  collision::RepairProgress(progress));
     number_by_scene(bodies, colliders, report);
     require_fit(scene, report);
+    for (const ClothGroup& group : groups)
+        if (const SceneSolids* solids = group.solids())
+            for (std::vector<int>& near : find_too_near(starts_of(scene, *solids), contact_colliders(bodies)))
+                report.too_near.push_back(std::move(near));
     if (report.was_repaired)
         place(cloths, soft_bodies, groups);
     if (scene.contact.repair_start)
-        unsettle(report, groups);
+        unsettle(report.too_near, groups);
     using Kind = collision::StartDefect::Kind;
     if (report.remaining(Kind::Crossing) == 0 && report.remaining(Kind::CrossesBody) == 0)
         for (ClothGroup& group : groups)

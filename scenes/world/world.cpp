@@ -213,8 +213,8 @@ struct World::Parts {
     }
 
     /// Relaxes cloth that the start pose or its repair strain beyond its limit, as long as the strain falls,
-    /// soft bodies that the repair has deformed, and what starts so near to a body that contact would throw it
-    /// off. Those that share their group with solids do so in the first steps.
+    /// soft bodies that the repair has deformed, and what starts so near to a body that contact would throw
+    /// it off.
     StepReport relax_start()
     {
         constexpr int kMinSteps = 60, kPatience = 5;
@@ -226,8 +226,8 @@ struct World::Parts {
         for (ClothGroup& group : groups) {
             double min_strain = std::numeric_limits<double>::max();
             int stalled = 0;
-            for (int k = 0; k < max_steps && !group.has_solids() &&
-                            (group.is_unsettled() || (stalled < kPatience && group.is_strained()));
+            for (int k = 0;
+                 k < max_steps && (group.is_unsettled() || (stalled < kPatience && group.is_strained()));
                  ++k) {
                 const StageScope stage("scenes/relax_start");
                 const StepReport report = group.relax(dt, t_start, colliders);
@@ -353,12 +353,6 @@ World::World(const Scene& scene, const WorldOptions& options)
     parts_->start = repair_start_pose(scene, parts_->groups, parts_->colliders, [&](double fraction) {
         parts_->tell("repair of the start pose", fraction);
     });
-    for (const ClothGroup& group : parts_->groups)
-        if (group.is_unsettled() && group.has_solids() && options.warn)
-            options.warn(scene.source.string() +
-                         ": soft bodies that the repair of the start pose has deformed, and what starts nearer "
-                         "to a body than contact.gap, spring off in the first steps; without solids in the "
-                         "scene they would relax first");
     for (ClothGroup& group : parts_->groups)
         group.tie(scene.contact.gap, parts_->colliders, options.warn);
     for (const ClothGroup& group : parts_->groups)

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 #include "core/base/error.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world/world.h"
@@ -57,6 +59,31 @@ TEST(Solids, LandAndRestAtTheGapAndSleep)
     while (world.frame() < 70)
         world.advance_frame();
     EXPECT_EQ(world.stages().calls("pd/minimise"), minimised);
+}
+
+/// Contact would throw up the brick that starts on the floor. What flies meanwhile keeps its motion.
+TEST(Solids, RestOnTheFloorThatTheyStartOn)
+{
+    World world = world_of(kNoCloth + kFloor + R"("frames": 4, "contact": {"gap": 0.005}, "solids": [
+        {"name": "brick", "box": {"size": [0.2, 0.1, 0.06]}, "translate": [0, 0.05, 0]},
+        {"name": "flying", "box": {"size": [0.2, 0.1, 0.06]}, "translate": [0, 0.5, 0],
+         "velocity": [1, 0, 0], "spin": [0, 0, 3]}])");
+    EXPECT_GT(world.start().vertices_too_near(), 0);
+    world.settle();
+    EXPECT_GT(world.stages().calls("scenes/relax_start"), 0);
+    const std::vector<Vec3> start = world.surfaces()[1].positions;
+    while (world.frame() < 3) {
+        world.advance_frame();
+        for (const Vec3& p : world.surfaces()[0].positions)
+            EXPECT_NEAR(p.y() > 0.05 ? p.y() - 0.1 : p.y(), 0.005, 5e-4) << world.frame();
+    }
+    const std::vector<Vec3>& x = world.surfaces()[1].positions;
+    const Vec3 flown = mean(x) - mean(start);
+    EXPECT_NEAR(flown.x(), 0.1, 1e-6);
+    EXPECT_NEAR(flown.y(), -0.5 * 9.81 * 0.01, 2e-3);
+    const Eigen::AngleAxisd turn(0.3, Vec3::UnitZ());
+    for (size_t v = 0; v < x.size(); ++v)
+        EXPECT_LT((x[v] - mean(x) - turn * (start[v] - mean(start))).norm(), 2e-3);
 }
 
 /// State of a box of width 0.1 and this height after a second on an incline with friction `friction`:

@@ -107,6 +107,22 @@ void RigidBodies::set_velocity(int body, const Vec3& linear, const Vec3& angular
     b.spin = b.rotation * moments.cwiseProduct(b.rotation.transpose() * angular);
 }
 
+std::vector<RigidBodies::Motion> RigidBodies::motions() const
+{
+    std::vector<Motion> motions;
+    for (const Moving& b : bodies_)
+        motions.push_back({b.velocity, b.spin});
+    return motions;
+}
+
+void RigidBodies::set_motions(View<const Motion> motions)
+{
+    for (int i = 0; i < count(); ++i) {
+        bodies_[i].velocity = motions[i].velocity;
+        bodies_[i].spin = motions[i].spin;
+    }
+}
+
 void RigidBodies::begin_step(double dt, View<Vec3> q, View<Vec3> v)
 {
     for (int i = 0; i < count(); ++i) {

@@ -50,6 +50,14 @@ public:
     /// @param linear, angular  [m/s], [rad/s] about the centre
     void set_velocity(int body, const Vec3& linear, const Vec3& angular);
 
+    /// Motion of a body.
+    struct Motion {
+        Vec3 velocity = Vec3::Zero(); ///< [m/s] of the centre
+        Vec3 spin = Vec3::Zero();     ///< angular momentum about the centre [kg m^2/s]
+    };
+    std::vector<Motion> motions() const;          ///< [bodies]
+    void set_motions(View<const Motion> motions); ///< [bodies]
+
     Vec3 centre(int body) const { return bodies_[body].centre; }         ///< [m]
     Mat3 rotation(int body) const { return bodies_[body].rotation; }     ///< world_from_body
     Vec3 velocity(int body) const { return bodies_[body].velocity; }     ///< [m/s] of the centre
