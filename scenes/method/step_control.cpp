@@ -36,6 +36,8 @@ StepControl StepControl::by_motion(double sample_duration, double error)
     return {sample_duration / ticks, ticks, kTicksOfLongest, kTicksOfLongest / kFirst, error};
 }
 
+double StepControl::shortest() const { return tick_ * (error_ > 0.0 ? kShortest : length_); }
+
 int StepControl::choose(int begin, const std::function<double(int ticks)>& motion)
 {
     if (error_ == 0.0)

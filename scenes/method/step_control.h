@@ -29,6 +29,9 @@ public:
     int ticks_of_sample() const { return ticks_of_sample_; }
     int longest() const { return longest_; } ///< [ticks]
 
+    /// Shortest step but where the error is far too large [s].
+    double shortest() const;
+
     /// Length of the first step, for preparations [ticks].
     int first() const { return length_; }
 

@@ -273,6 +273,15 @@ StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>
     return report;
 }
 
+void ClothGroup::find_stiff_parts(double shortest_step)
+{
+    if (!soft_bodies_)
+        return;
+    std::vector<int> parts = soft_bodies_->stiff_parts(shortest_step);
+    if (!parts.empty())
+        body_->set_stiff_parts(parts);
+}
+
 void ClothGroup::unsettle(int cloth, View<const int> vertices)
 {
     std::transform(vertices.begin(), vertices.end(), std::back_inserter(unsettled_),

@@ -59,6 +59,9 @@ public:
     /// True if cloth is strained beyond its limit.
     bool is_strained() const;
 
+    /// @param shortest_step  [s] soft bodies through which sound passes in less are hit as a whole
+    void find_stiff_parts(double shortest_step);
+
     /// Lets relaxation at the start go on until vertices of a cloth rest, or a soft body, or a solid.
     void unsettle(int cloth, View<const int> vertices);
     void unsettle_soft_body(int body);

@@ -165,6 +165,8 @@ struct World::Parts {
         choose_space(cloths, bodies, options);
         const LongWork::Part part(kCloths, 1.0);
         groups = make_groups(scene, std::move(cloths), std::move(bodies), colliders, options, space.get());
+        for (ClothGroup& group : groups)
+            group.find_stiff_parts(control.shortest());
         LongWork::update(1.0);
     }
 

@@ -44,12 +44,13 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       fixed_targets_on_host_(space, "body/fixed_targets_on_host"),
       x_previous_(space, "body/x_previous", x_.size()), v_previous_(space, "body/v_previous", x_.size()),
       restart_(space, "body/restart", x_.size()), touched_(space, "body/touched", x_.size()),
-      touches_(space, "body/touches", x_.size()), restart_before_(space, "body/restart_before", x_.size()),
-      error_sums_(space), minimiser_(space, "body/minimiser", x_.size()),
-      inertia_(space, "body/inertia", x_.size()), found_(space, "body/found", x_.size()),
-      masses_(space, "body/masses"), diagonal_(space, "body/diagonal"),
-      inverse_masses_(space, "body/inverse_masses"), fixed_(space, "body/fixed"),
-      begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
+      touches_(space, "body/touches", x_.size()), stiff_part_(space, "body/stiff_part"),
+      part_touched_(space, "body/part_touched"), part_touches_(space, "body/part_touches"),
+      restart_before_(space, "body/restart_before", x_.size()), error_sums_(space),
+      minimiser_(space, "body/minimiser", x_.size()), inertia_(space, "body/inertia", x_.size()),
+      found_(space, "body/found", x_.size()), masses_(space, "body/masses"),
+      diagonal_(space, "body/diagonal"), inverse_masses_(space, "body/inverse_masses"),
+      fixed_(space, "body/fixed"), begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
       finish_sums_(space, "body/finish_sums", block_count(x_.size(), kSumItems)),
       end_sums_(space, "body/end_sums", block_count(x_.size(), kSumItems)),
       finished_(space, "body/finished", 1), speed_(space, "body/largest_speed", 1),
@@ -166,10 +167,10 @@ void DeviceBody::restart_touching(const StepInput& input)
 {
     if (settings_.integrator == Integrator::ImplicitEuler)
         return;
-    input.active->mark_touching(x_t1_, touches_.view());
+    mark_touching(*input.active);
     parallel_for(space_, "pd/restart", x_.size(), RestartTouching{motion()});
     predict_motion();
-    touches_.fill_zero();
+    forget_touching();
 }
 
 OuterLoop::Outcome DeviceBody::minimise_by_newton(const Newton::Settings& settings,

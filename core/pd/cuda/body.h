@@ -67,6 +67,7 @@ public:
     std::shared_ptr<const Readback<Vec3>> read_back_positions() override;
     void set_positions(View<const Vec3> x) override;
     void set_velocities(View<const Vec3> v) override;
+    void set_stiff_parts(const std::vector<int>& of_vertex) override;
     double max_speed() const override;
     View<const double> masses() const override { return system_->masses(); }
 
@@ -95,6 +96,7 @@ private:
     DeviceDescent::Problem problem();
     DescentFields fields() { return descent_->fields(problem()); }
     MotionView motion();
+    void forget_touching();
     void restart_all();
     void predict();
     void predict_motion();
@@ -132,6 +134,8 @@ private:
     double previous_dt_ = 0.0; ///< [s] 0: there was no step before
     DeviceArray<Vec3> x_previous_, v_previous_;
     DeviceArray<unsigned char> restart_, touched_, touches_;
+    DeviceArray<int> stiff_part_;
+    DeviceArray<unsigned char> part_touched_, part_touches_;
     DeviceArray<unsigned char> restart_before_; ///< restart_ before the step
     SumScratch<StepErrorSum> error_sums_;
     DeviceArray<Vec3> minimiser_; ///< [vertices] [m]

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/compute/copy_items.h"
@@ -82,8 +83,9 @@ void DeviceBody::begin_targets(View<const Vec3> targets)
 
 MotionView DeviceBody::motion()
 {
-    return {x_.change_on_device(), v_.change_on_device(), x_previous_.view(), v_previous_.view(),
-            restart_.view(),       touched_.view(),       touches_.view(),    fixed_.view()};
+    return {x_.change_on_device(), v_.change_on_device(), x_previous_.view(),  v_previous_.view(),
+            restart_.view(),       touched_.view(),       touches_.view(),     fixed_.view(),
+            stiff_part_.view(),    part_touched_.view(),  part_touches_.view()};
 }
 
 /// Begins the motion anew everywhere.
@@ -121,8 +123,28 @@ void DeviceBody::predict_motion()
 
 void DeviceBody::mark_touching(ActiveSetEnergy& active)
 {
-    if (settings_.integrator != Integrator::ImplicitEuler)
-        active.mark_touching(x_t1_, touches_.view());
+    if (settings_.integrator == Integrator::ImplicitEuler)
+        return;
+    active.mark_touching(x_t1_, touches_.view());
+    if (stiff_part_.size() > 0)
+        parallel_for(space_, "pd/mark_parts", stiff_part_.size(), MarkPart{motion()});
+}
+
+void DeviceBody::set_stiff_parts(const std::vector<int>& of_vertex)
+{
+    stiff_part_.upload(of_vertex);
+    for (DeviceArray<unsigned char>* marks : {&part_touched_, &part_touches_}) {
+        marks->resize(1 + *std::max_element(of_vertex.begin(), of_vertex.end()));
+        marks->fill_zero();
+    }
+}
+
+void DeviceBody::forget_touching()
+{
+    touches_.fill_zero();
+    if (stiff_part_.size() > 0)
+        for (DeviceArray<unsigned char>* marks : {&part_touched_, &part_touches_})
+            marks->fill_zero();
 }
 
 double DeviceBody::local_error()
@@ -136,7 +158,7 @@ void DeviceBody::abandon()
 {
     parallel_for(space_, "pd/abandon", restart_.size(),
                  CopyItems<unsigned char>{restart_before_.view(), restart_.view()});
-    touches_.fill_zero();
+    forget_touching();
 }
 
 void DeviceBody::finish(StepProjection*)
@@ -155,6 +177,7 @@ void DeviceBody::end(StepProjection* projection, StepReport& report)
 {
     parallel_sum(space_, "pd/end", x_.size(), LargestSquare{},
                  EndVertex{{motion(), minimiser_.view(), x_t1_.device()}}, speed_.view(), end_sums_);
+    forget_touching();
     previous_dt_ = dt_;
     if (projection)
         projection->on_device(space_)->end_step(x_.device());

@@ -15,7 +15,8 @@ enum class Integrator { Bdf2, ImplicitEuler };
 ///   x = a0 x_0 - a1 x_{-1} + beta h v,    v = a0 v_0 - a1 v_{-1} + beta h f(x) / m
 ///
 /// A vertex that touches something takes implicit Euler steps while it begins to (a0 = beta = 1, a1 = 0):
-/// there BDF2 would rebound.
+/// there BDF2 would rebound. So does all of a stiff part, of which none touched anything before: sound passes
+/// through it within the step.
 struct Bdf2 {
     /// Maximum ratio of steps [-]; zero-stable up to 2.41.
     static constexpr double kMaxRatio = 2.0;
@@ -78,12 +79,33 @@ struct MotionView {
     View<unsigned char> restart;             ///< 1: this step is one of implicit Euler
     View<unsigned char> touched, touches;    ///< at the start of the step; now
     View<const unsigned char> fixed;
+    View<const int> stiff_part; ///< [vertices] its number, -1: none; empty: there are none
+    View<unsigned char> part_touched, part_touches; ///< [stiff parts] any of the vertices
 
     TOILE_HD Bdf2 scheme_of(int i, const Bdf2& scheme) const
     {
         return restart[i] != 0 || fixed[i] != 0 ? Bdf2::implicit_euler(scheme.h) : scheme;
     }
-    TOILE_HD bool has_begun_to_touch(int i) const { return touches[i] != 0 && touched[i] == 0; }
+    TOILE_HD bool has_begun_to_touch(int i) const
+    {
+        if (touches[i] != 0 && touched[i] == 0)
+            return true;
+        const int part = stiff_part.empty() ? -1 : stiff_part[i];
+        return part >= 0 && part_touches[part] != 0 && part_touched[part] == 0;
+    }
+};
+
+/// Marks the stiff part of vertex i if it touches something. Threads may write the same value.
+struct MarkPart {
+    MotionView motion;
+    TOILE_HD void operator()(int i) const
+    {
+        const int part = motion.stiff_part[i];
+        if (part >= 0 && motion.touched[i] != 0)
+            motion.part_touched[part] = 1;
+        if (part >= 0 && motion.touches[i] != 0)
+            motion.part_touches[part] = 1;
+    }
 };
 
 /// Inertia 1/2 c_i |x_i - y_i|^2 of a step, from the motion so far and external acceleration. Fixed vertices
@@ -158,8 +180,9 @@ struct FinishMotion {
     }
 };
 
-/// Makes the end of a step the next start. The next step restarts vertices that have begun to touch, that a
-/// constraint has moved from where the minimiser left them, or that may be released.
+/// Makes the end of a step the next start; touches is to be cleared. The next step restarts vertices that
+/// have begun to touch, that a constraint has moved from where the minimiser left them, or that may be
+/// released.
 struct EndMotion {
     MotionView motion;
     View<const Vec3> minimiser, x_t1; ///< [vertices] [m]
@@ -170,7 +193,6 @@ struct EndMotion {
         motion.restart[i] =
             (unsigned char)(motion.has_begun_to_touch(i) || was_moved || motion.fixed[i] != 0);
         motion.touched[i] = motion.touches[i];
-        motion.touches[i] = 0;
         motion.x_previous[i] = motion.x[i];
         motion.x[i] = x_t1[i];
     }

@@ -44,7 +44,9 @@ void Body::prepare(double dt, const std::vector<unsigned char>& fixed)
 
 MotionView Body::motion()
 {
-    return {x_, v_, x_previous_, v_previous_, restart_, touched_, touches_, system_->fixed()};
+    return {x_,           v_,       x_previous_,      v_previous_, restart_,
+            touched_,     touches_, system_->fixed(), stiff_part_, part_touched_,
+            part_touches_};
 }
 
 void Body::begin(const StepInput& input)
@@ -77,10 +79,10 @@ void Body::restart_touching(const StepInput& input)
 {
     if (settings_.integrator == Integrator::ImplicitEuler)
         return;
-    input.active->mark_touching(x_t1_, touches_);
+    mark_touching(*input.active);
     parallel_for(kCpu, "pd/restart", int(x_.size()), RestartTouching{motion()});
     predict(input);
-    std::fill(touches_.begin(), touches_.end(), 0);
+    forget_touching();
 }
 
 StepStart Body::start() const
@@ -154,8 +156,31 @@ OuterLoop::Outcome Body::minimise_by_newton(const Newton::Settings& settings, co
 
 void Body::mark_touching(ActiveSetEnergy& active)
 {
-    if (settings_.integrator != Integrator::ImplicitEuler)
-        active.mark_touching(x_t1_, touches_);
+    if (settings_.integrator == Integrator::ImplicitEuler)
+        return;
+    active.mark_touching(x_t1_, touches_);
+    mark_parts();
+}
+
+void Body::set_stiff_parts(const std::vector<int>& of_vertex)
+{
+    stiff_part_ = of_vertex;
+    const int count = 1 + *std::max_element(of_vertex.begin(), of_vertex.end());
+    part_touched_.assign(count, 0);
+    part_touches_.assign(count, 0);
+}
+
+void Body::mark_parts()
+{
+    const MarkPart mark{motion()};
+    for (int i = 0; i < int(stiff_part_.size()); ++i)
+        mark(i);
+}
+
+void Body::forget_touching()
+{
+    for (std::vector<unsigned char>* marks : {&touches_, &part_touched_, &part_touches_})
+        std::fill(marks->begin(), marks->end(), 0);
 }
 
 double Body::local_error()
@@ -168,7 +193,7 @@ double Body::local_error()
 void Body::abandon()
 {
     restart_ = restart_before_;
-    std::fill(touches_.begin(), touches_.end(), 0);
+    forget_touching();
 }
 
 void Body::finish(StepProjection* projection)
@@ -188,6 +213,7 @@ void Body::project(StepProjection& projection, const std::function<bool()>& clea
 void Body::end(StepProjection*, StepReport& report)
 {
     parallel_for(kCpu, "pd/end", int(x_.size()), EndMotion{motion(), minimiser_, x_t1_});
+    forget_touching();
     previous_dt_ = dt_;
     report.step_error = error_.rms();
 }

@@ -43,6 +43,7 @@ public:
 
     void set_positions(View<const Vec3> x) override;
     void set_velocities(View<const Vec3> v) override;
+    void set_stiff_parts(const std::vector<int>& of_vertex) override;
 
     View<const double> masses() const override { return system_->masses(); }
     const System& system() const { return *system_; }
@@ -64,6 +65,8 @@ private:
     void end(StepProjection* projection, StepReport& report) override;
 
     MotionView motion();
+    void mark_parts();
+    void forget_touching();
     void predict(const StepInput& input);
     double tolerance() const;
     OuterLoop::Outcome no_worse_than_standing(OuterLoop::Settings settings, const OuterLoop::Outcome& found);
@@ -83,6 +86,8 @@ private:
     double previous_dt_ = 0.0; ///< [s] 0: there was no step before
     std::vector<Vec3> x_previous_, v_previous_;
     std::vector<unsigned char> restart_, touched_, touches_;
+    std::vector<int> stiff_part_;
+    std::vector<unsigned char> part_touched_, part_touches_;
     std::vector<unsigned char> restart_before_; ///< restart_ before the step
     std::vector<Vec3> minimiser_;               ///< [vertices] [m]
     std::vector<double> inertia_;               ///< [vertices] [N/m]

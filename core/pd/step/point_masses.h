@@ -40,6 +40,11 @@ public:
     /// refused.
     void refuse_steps_beyond(double error) { max_error_ = error; }
 
+    /// Declares parts through which sound passes within a step: an impact is one of all their vertices.
+    /// Without effect on methods that integrate by themselves.
+    /// @param of_vertex  [vertices] number of its part, from 0 on; -1: of none
+    virtual void set_stiff_parts([[maybe_unused]] const std::vector<int>& of_vertex) {}
+
     // Current positions [m] and velocities [m/s] of the vertices; views are valid until the next change.
     virtual View<const Vec3> positions() const = 0;
     virtual View<const Vec3> velocities() const = 0;

@@ -1,6 +1,7 @@
 #include "scenes/world/bodies/scene_soft_bodies.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/base/error.h"
@@ -33,6 +34,7 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
         body.first_inner = next_inner;
         body.density = settings.density;
         body.damping = settings.damping;
+        body.sound_speed = std::sqrt(settings.young / settings.density);
         body.velocity = settings.velocity;
         body.surface = std::move(loaded[i].surface);
         body.rest = std::move(loaded[i].rest);
@@ -99,6 +101,20 @@ void SceneSoftBodies::require_one_owner(const Body& body, const std::string& cor
         return "the vertex at (" + short_text(x.x()) + ", " + short_text(x.y()) + ", " + short_text(x.z()) +
                ") m";
     });
+}
+
+std::vector<int> SceneSoftBodies::stiff_parts(double dt) const
+{
+    std::vector<int> part;
+    for (int i = 0; i < count(); ++i) {
+        const Bounds box = bounds(bodies_[i].positions);
+        if ((box.upper - box.lower).maxCoeff() > bodies_[i].sound_speed * dt)
+            continue;
+        part.resize(unknown_count(), -1);
+        for (const int unknown : unknowns(i))
+            part[unknown] = i;
+    }
+    return part;
 }
 
 int SceneSoftBodies::body_of(int unknown) const

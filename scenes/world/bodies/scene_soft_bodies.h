@@ -43,7 +43,10 @@ public:
     int first_vertex(int body) const { return bodies_[body].first_surface; }
     int body_of(int unknown) const;                             ///< of a vertex
     double mass(int body) const { return mass(bodies_[body]); } ///< [kg]
-    std::vector<int> unknowns(int body) const;                  ///< [vertices of the body] ascending
+    /// [unknowns of the group] Number of a body through which sound passes within dt [s], -1: of none. Empty:
+    /// there is no such body.
+    std::vector<int> stiff_parts(double dt) const;
+    std::vector<int> unknowns(int body) const; ///< [vertices of the body] ascending
 
     /// [vertices of the body] at rest, in the body's own axes [m]
     const std::vector<Vec3>& rest_positions(int body) const { return bodies_[body].rest.positions; }
@@ -78,6 +81,7 @@ private:
     struct Body {
         int first_surface, first_inner; ///< unknowns
         double density, damping;        ///< [kg/m^3], [1/s]
+        double sound_speed;             ///< [m/s] along a bar
         Vec3 velocity;                  ///< [m/s]
         ClothState surface;
         volume::TetMesh rest;        ///< [m] in its own axes

@@ -351,6 +351,42 @@ TEST_F(DeviceBodyTest, GoesOnAsIfARefusedStepHadNotBeenTried)
     }
 }
 
+/// The first step in which a stiff part touches the plane is one of implicit Euler everywhere.
+TEST_F(DeviceBodyTest, BeginsStiffPartsAnewAsOnTheCpu)
+{
+    Body::Settings settings = exact();
+    settings.outer = OuterMethod::Newton;
+    settings.integrator = Integrator::Bdf2;
+    settings.speed_tolerance = 1e-4;
+    DeviceBody::Settings device_settings = second_order();
+    device_settings.speed_tolerance = 1e-4;
+    device_settings.max_iterations = settings.max_iterations;
+    const Swings swings(2);
+    Body first(swings.start(), swings.system(swings.solver()), settings);
+    for (int k = 0; k < 6; ++k)
+        step(first, swings);
+    Body loose(swings.start(), swings.system(swings.solver()), settings);
+    Body stiff(swings.start(), swings.system(swings.solver()), settings);
+    const auto gpu = make_body(swings, device_settings);
+    const std::vector<int> one_part(swings.start().size(), 0);
+    stiff.set_stiff_parts(one_part);
+    gpu->set_stiff_parts(one_part);
+    for (PointMasses* body : {static_cast<PointMasses*>(&loose), static_cast<PointMasses*>(&stiff),
+                              static_cast<PointMasses*>(gpu.get())})
+        start_where(first, *body);
+    TouchingPlane plane(swings.start(), rough_floor());
+    for (int k = 0; k < 4; ++k) {
+        TouchingPlane* active = k > 1 ? &plane : nullptr;
+        step(loose, swings, active);
+        step(stiff, swings, active);
+        step(*gpu, swings, active);
+        EXPECT_LT(max_distance(gpu->positions(), stiff.positions()), 1e-4 * (k + 1)) << k;
+        if (k < 2)
+            EXPECT_EQ(copy_of(loose.positions()), copy_of(stiff.positions())) << k;
+    }
+    EXPECT_NE(copy_of(loose.positions()), copy_of(stiff.positions()));
+}
+
 TEST_F(DeviceBodyTest, HasTheSameBitsOfNewtonEveryTime)
 {
     const Swings swings(3);
