@@ -78,8 +78,7 @@ double ShortEdges::fraction(int edge, View<const Vec3> motion) const
 {
     const auto [a, b] = edges_[edge];
     const Vec3 before = base_[b] - base_[a];
-    return fraction_within(before, motion[b] - motion[a],
-                           kMaxStretch * kMaxStretch * before.squaredNorm());
+    return fraction_within(before, motion[b] - motion[a], kMaxStretch * kMaxStretch * before.squaredNorm());
 }
 
 } // namespace toile::collision

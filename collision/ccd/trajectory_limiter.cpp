@@ -33,13 +33,13 @@ constexpr double kShortEdge = 0.2;
 /// more pairs by the cube of edges.
 constexpr double kMaxDeviation = 5.0;
 
-/// Passes that limit the vertices of a pair or short edge in proportion. Vertices still blocked afterwards move
-/// with their zone.
+/// Passes that limit the vertices of a pair or short edge in proportion. Vertices still blocked afterwards
+/// move with their zone.
 constexpr int kPasses = 16;
 
 /// Edges of cloth.
-std::vector<ShortEdges::Edge> flexible_edges(const SurfaceEdges& edges,
-                                                     const RigidTrajectories& bodies, int first_prescribed)
+std::vector<ShortEdges::Edge> flexible_edges(const SurfaceEdges& edges, const RigidTrajectories& bodies,
+                                             int first_prescribed)
 {
     std::vector<ShortEdges::Edge> flexible;
     std::copy_if(edges.vertex.begin(), edges.vertex.end(), std::back_inserter(flexible),
@@ -55,7 +55,7 @@ TrajectoryLimiter::TrajectoryLimiter(const SurfaceEdges& edges, const Settings& 
                                      RigidTrajectories bodies)
     : settings_(settings), bodies_(std::move(bodies)),
       short_edges_(flexible_edges(edges, bodies_, settings.first_prescribed),
-                       int(edges.corners_of_vertex.first.size()) - 1)
+                   int(edges.corners_of_vertex.first.size()) - 1)
 {
 }
 

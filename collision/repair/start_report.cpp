@@ -43,8 +43,9 @@ int StartReport::vertices_inside() const
 
 int StartReport::vertices_too_near() const
 {
-    return std::accumulate(too_near.begin(), too_near.end(), 0,
-                           [](int sum, const std::vector<int>& of_cloth) { return sum + int(of_cloth.size()); });
+    return std::accumulate(
+        too_near.begin(), too_near.end(), 0,
+        [](int sum, const std::vector<int>& of_cloth) { return sum + int(of_cloth.size()); });
 }
 
 double StartReport::deepest(StartDefect::Kind kind) const

@@ -462,7 +462,8 @@ void describe(V& v, Contact& c)
     v.field("friction_pairs", c.friction_pairs, "Friction of particular pairs of materials.");
     v.field("self", c.self, "Contact of cloth with itself and other cloth. Not with xpbd and vbd.");
     v.field("repair_start", c.repair_start,
-            "Move cloth and soft bodies that start inside or through others, or nearer to bodies than the gap; otherwise only report it.");
+            "Move cloth and soft bodies that start inside or through others, or nearer to bodies than the "
+            "gap; otherwise only report it.");
 }
 
 template <typename V>
