@@ -16,7 +16,7 @@ namespace toile::collision {
 ///      normal, in a few passes. Pinched cloth thus keeps moving with the bodies that pinch it.
 ///   2. Limit. The four vertices of a pair that is still blocked join one zone (ImpactZones).
 ///      max_safe_step() scales down the differences between their displacements and the zone's. If this
-///      overstretches an edge of cloth, its other end follows (EdgeStretchLimiter). Zones only grow and
+///      stretches an edge that is a point to contact, its other end follows (ShortEdges). Zones only grow and
 ///      fractions only shrink. Vertices that all move alike neither meet nor stretch, so this ends.
 ///
 /// Rigid bodies are never deflected. In a zone they rotate by a fraction of their rotation and move as a

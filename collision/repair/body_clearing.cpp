@@ -124,9 +124,12 @@ std::vector<InsideSample> BodyClearing::inside(View<const Vec3> x, double depth)
 std::vector<int> BodyClearing::nearer(View<const Vec3> x, double fraction) const
 {
     std::vector<int> near;
-    for (const InsideSample& sample : movable_below(x, fraction))
+    for (const InsideSample& sample : movable_below(x, fraction)) {
+        if (sample.proximity.signed_distance < -kTouchDepth)
+            continue;
         std::copy_if(sample.vertex.begin(), sample.vertex.end(), std::back_inserter(near),
                      [&](int v) { return v >= 0 && cloths_.fixed[v] == 0; });
+    }
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
     return near;

@@ -26,6 +26,9 @@ struct SurfaceCrossing {
     Vec3 way_out = Vec3::Zero(); ///< shortest displacement that takes it off the other triangle [m]
 };
 
+/// Depth [m] above which a point counts as inside a body; at smaller depths it touches.
+inline constexpr double kTouchDepth = 1e-6;
+
 /// Moves cloth out of bodies, which are grown from where the cloth is outside.
 class BodyClearing {
 public:
@@ -36,7 +39,8 @@ public:
     /// vertices.
     std::vector<InsideSample> inside(View<const Vec3> x, double depth) const;
 
-    /// Vertices, ascending and not fixed, of samples that are nearer to a body than `fraction` of their gap.
+    /// Vertices, ascending and not fixed, of samples that are in front of a body, or on it, but nearer than
+    /// `fraction` of their gap.
     std::vector<int> nearer(View<const Vec3> x, double fraction) const;
 
     /// Triangles that cross or touch the surface of a body, by the exact test. Left out are faces of a body

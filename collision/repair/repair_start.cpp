@@ -16,9 +16,6 @@ namespace toile::collision {
 
 namespace {
 
-/// Depth [m] above which a point counts as inside a body; at smaller depths it touches.
-constexpr double kTouchDepth = 1e-6;
-
 /// Part of the gap to a body [-] below which contact would throw cloth off.
 constexpr double kNear = 0.75;
 

@@ -12,7 +12,7 @@ namespace toile::collision {
 /// Finds the defects of a start pose. Moves nothing. O(n log n).
 StartReport check_start(const std::vector<StartCloth>& cloths, const std::vector<ContactCollider>& bodies);
 
-/// [cloths] Vertices, ascending, that are nearer to a body than 0.75 of their gap, and not fixed: contact
+/// [cloths] Vertices, ascending and not fixed, in front of a body but nearer than 0.75 of their gap: contact
 /// would throw them off in the first step.
 std::vector<std::vector<int>> find_too_near(const std::vector<StartCloth>& cloths,
                                             const std::vector<ContactCollider>& bodies);

@@ -264,6 +264,7 @@ StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>
         solids_->bodies().set_motions(of_solids);
     forget_rest(); // it is not that of a body with weight
     body_->set_velocities(velocities);
+    body_->begin_anew();
     if (is_unsettled()) {
         const std::vector<Vec3> x = surfaces();
         if (std::all_of(unsettled_.begin(), unsettled_.end(),

@@ -224,12 +224,13 @@ struct World::Parts {
         const double dt = control.first() * control.tick(), t_start = -settle_ticks() * control.tick();
         const int max_steps = std::max(kMinSteps, int(kMaxTime / dt));
         const Cancellation::Scope cancellation(goes_on);
+        const bool may_strain = start.was_repaired || may_start_strained();
         StepReport total;
         for (ClothGroup& group : groups) {
             double min_strain = std::numeric_limits<double>::max();
             int stalled = 0;
-            for (int k = 0;
-                 k < max_steps && (group.is_unsettled() || (stalled < kPatience && group.is_strained()));
+            for (int k = 0; k < max_steps && (group.is_unsettled() ||
+                                              (may_strain && stalled < kPatience && group.is_strained()));
                  ++k) {
                 const StageScope stage("scenes/relax_start");
                 const StepReport report = group.relax(dt, t_start, colliders);

@@ -52,8 +52,9 @@ public:
     ///         it too; the sample in progress is then lost.
     void prepare();
 
-    /// Simulates Scene::settle seconds with every avatar in its first pose. Before, cloth that the repair of
-    /// the start pose has strained beyond its limit relaxes: stage "scenes/relax_start".
+    /// Simulates Scene::settle seconds with every avatar in its first pose. Before, cloth and
+    /// bodies that the repair of the start pose has strained, or that start too near to a body, relax: stage
+    /// "scenes/relax_start".
     /// @throws InvalidUse after advance_frame()
     StepReport settle();
 

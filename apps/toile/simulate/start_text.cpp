@@ -98,7 +98,7 @@ std::string start_text(const collision::StartReport& report, const scenes::Scene
         const int near = report.vertices_too_near();
         return near == 0 ? ""
                          : "start pose: " + number_of(near, "vertex is", "vertices are") + " nearer to " +
-                               bodies + " than contact.gap; " +
+                               bodies + " than the gap that contact keeps; " +
                                (scene.contact.repair_start ? "moved off before frame 0" : "left as it is");
     }
     const std::string surface = has_soft_bodies ? "surfaces" : "cloth";

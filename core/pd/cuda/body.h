@@ -68,6 +68,7 @@ public:
     void set_positions(View<const Vec3> x) override;
     void set_velocities(View<const Vec3> v) override;
     void set_stiff_parts(const std::vector<int>& of_vertex) override;
+    void begin_anew() override;
     double max_speed() const override;
     View<const double> masses() const override { return system_->masses(); }
 

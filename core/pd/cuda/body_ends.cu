@@ -139,6 +139,12 @@ void DeviceBody::set_stiff_parts(const std::vector<int>& of_vertex)
     }
 }
 
+void DeviceBody::begin_anew()
+{
+    previous_dt_ = 0.0;
+    touched_.fill_zero();
+}
+
 void DeviceBody::forget_touching()
 {
     touches_.fill_zero();

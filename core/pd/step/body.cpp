@@ -170,6 +170,12 @@ void Body::set_stiff_parts(const std::vector<int>& of_vertex)
     part_touches_.assign(count, 0);
 }
 
+void Body::begin_anew()
+{
+    previous_dt_ = 0.0;
+    std::fill(touched_.begin(), touched_.end(), 0);
+}
+
 void Body::mark_parts()
 {
     const MarkPart mark{motion()};

@@ -44,6 +44,7 @@ public:
     void set_positions(View<const Vec3> x) override;
     void set_velocities(View<const Vec3> v) override;
     void set_stiff_parts(const std::vector<int>& of_vertex) override;
+    void begin_anew() override;
 
     View<const double> masses() const override { return system_->masses(); }
     const System& system() const { return *system_; }

@@ -45,6 +45,9 @@ public:
     /// @param of_vertex  [vertices] number of its part, from 0 on; -1: of none
     virtual void set_stiff_parts([[maybe_unused]] const std::vector<int>& of_vertex) {}
 
+    /// Forgets earlier steps and what touched: the next step is the first of the motion.
+    virtual void begin_anew() {}
+
     // Current positions [m] and velocities [m/s] of the vertices; views are valid until the next change.
     virtual View<const Vec3> positions() const = 0;
     virtual View<const Vec3> velocities() const = 0;

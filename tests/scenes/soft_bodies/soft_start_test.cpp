@@ -182,6 +182,19 @@ TEST_F(SoftStart, RestsOnTheFloorThatItStartsOn)
     EXPECT_EQ(lowest(left.surfaces()[0].positions), 0.0);
 }
 
+/// An impact in the first step, of what touched while it relaxed.
+TEST_F(SoftStart, HitsTheFloorThatItStartsOn)
+{
+    World world = world_of(kFloor + R"("frames": 6, "cloths": [], "soft_bodies": [)" +
+                           block("stiff", R"("young": 1e9, "velocity": [0, -3, 0])") + "]");
+    world.settle();
+    const double start = mean(world.surfaces()[0].positions).y();
+    while (world.frame() < 5) {
+        EXPECT_EQ(world.advance_frame().status, StepReport::Status::Converged);
+        EXPECT_LT(mean(world.surfaces()[0].positions).y(), start + 1e-3) << world.frame();
+    }
+}
+
 TEST_F(SoftStart, KeepsItsVelocityWhereItStartsOnTheFloor)
 {
     World world = world_of(kFloor + R"("frames": 2, "cloths": [], "soft_bodies": [)" +
