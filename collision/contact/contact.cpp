@@ -108,7 +108,7 @@ bool Contact::sweep_once(StepField x) const
 
 bool Contact::revise(StepField x, MinimiserProgress progress)
 {
-    const bool is_converged = progress == MinimiserProgress::kConverged;
+    const bool is_converged = progress >= MinimiserProgress::kConverged;
     if (terms_->empty() && !between_)
         return false;
     terms_->see(x);
@@ -131,7 +131,8 @@ bool Contact::revise(StepField x, MinimiserProgress progress)
     if (terms_->has_left(kTrust) || has_new_pairs) {
         terms_->remember(RememberedSlip::kByStart);
         find_again();
-        return true;
+        if (progress != MinimiserProgress::kSettled)
+            return true;
     }
     return has_landed || has_sunk || (is_limited && sums.short_count > 0);
 }

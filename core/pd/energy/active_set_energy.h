@@ -9,7 +9,12 @@ class CudaSpace;
 class DeviceActiveSet;
 
 /// How far a minimisation is from its minimum.
-enum class MinimiserProgress { kFar, kNear, kConverged };
+enum class MinimiserProgress {
+    kFar,
+    kNear,
+    kConverged,
+    kSettled ///< has converged time and again, while the energy changed in between
+};
 
 /// State of a body at the start of a step, for an energy with an active set.
 struct StepStart {
@@ -70,8 +75,9 @@ public:
     /// Called after every minimisation. Refreshes lagged quantities (friction limits) if x is converged, and
     /// searches again if x left the neighbourhood of the candidates. Moves x [vertices] back if it violates
     /// the invariants of keep_apart(); where nothing is near, only once x is converged. True if the energy
-    /// changed enough to minimise again.
-    /// @param progress  converged: the minimisation was not cut short, and forces at x exceed its residual
+    /// changed enough to minimise again: once it has settled, by more than a search does.
+    /// @param progress  converged, settled: the minimisation was not cut short, and forces at x exceed its
+    ///                  residual
     virtual bool revise(StepField x, MinimiserProgress progress) = 0;
 
     /// Removes what the minimisation has left inside the forbidden half-spaces.

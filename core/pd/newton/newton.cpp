@@ -51,6 +51,10 @@ constexpr double kOfDriving = 0.15, kDrivingOfStep = 0.04, kReachable = 1e-6;
 /// unbalanced by 14 % of the weight, which moves cloth by next to nothing, but friction by as much.
 constexpr int kSmallSteps = 2;
 
+/// Small Newton steps in succession after which cloth has converged although each look has found other pairs.
+/// Where surfaces slide on fine triangles, some of their vertices meet other triangles in every iteration.
+constexpr int kSettled = 4;
+
 /// @param driving  speed that external forces add in the step [m/s]
 double tolerance_by_driving(double driving)
 {
@@ -128,10 +132,10 @@ NewtonSpace::Solution find_corrected_direction(NewtonSpace& space, bool is_first
     }
 }
 
-MinimiserProgress progress_of(const OuterLoop::Outcome& outcome, double tolerance)
+MinimiserProgress progress_of(const OuterLoop::Outcome& outcome, double tolerance, bool has_settled)
 {
     if (outcome.converged)
-        return MinimiserProgress::kConverged;
+        return has_settled ? MinimiserProgress::kSettled : MinimiserProgress::kConverged;
     return outcome.speed < kNear * tolerance ? MinimiserProgress::kNear : MinimiserProgress::kFar;
 }
 
@@ -222,7 +226,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
     const int small_steps = is_calm ? 1 : kSmallSteps;
     double lowest = std::numeric_limits<double>::infinity(), kept_value = lowest;
     double reach = lowest;
-    int since_lowest = 0, small = 0, setbacks = 0;
+    int since_lowest = 0, small = 0, small_with_any_pairs = 0, setbacks = 0;
     for (int look = 0; std::isfinite(outcome.value) && look < settings.max_iterations; ++look) {
         LongWork::iterate(look + 1);
         since_lowest = outcome.value < lowest ? 0 : since_lowest + 1;
@@ -241,9 +245,12 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
         if (!outcome.converged) {
             step = iterate(space, settings, reach, outcome);
             small = outcome.converged ? small + 1 : 0;
-            outcome.converged = outcome.converged && (small >= small_steps || step == 0.0);
+            small_with_any_pairs = outcome.converged ? small_with_any_pairs + 1 : 0;
+            outcome.converged = outcome.converged &&
+                                (small >= small_steps || step == 0.0 || small_with_any_pairs >= kSettled);
         }
-        const bool has_changed = revise && revise(progress_of(outcome, settings.tolerance));
+        const bool has_changed =
+            revise && revise(progress_of(outcome, settings.tolerance, small_with_any_pairs >= kSettled));
         if (!has_changed && (outcome.converged || step == 0.0))
             break;
         outcome.converged = false;
@@ -262,7 +269,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
         if (!has_moved)
             continue;
         if (retake(space, revise, start, gain, step, reach, outcome))
-            small = 0;
+            small = small_with_any_pairs = 0;
         setbacks += start - outcome.value < kKept * gain ? 1 : 0;
     }
     if (setbacks > settings.max_setbacks) {

@@ -226,6 +226,17 @@ TEST(Contact, KeepsTheAnchorOfTheStartWhenPairsAreUpdated)
     EXPECT_EQ(term.anchor.x(), 0.0);
 }
 
+TEST(Contact, IsNotMinimisedForOtherPairsAloneOnceItHasSettled)
+{
+    RisingPlate scene;
+    std::vector<Vec3> x = scene.slid();
+    ASSERT_TRUE(scene.contact.revise(x, MinimiserProgress::kSettled)); // friction has landed
+    x[0].x() += 0.02;
+    ASSERT_TRUE(scene.contact.revise(x, MinimiserProgress::kConverged));
+    x[0].x() += 0.02;
+    EXPECT_FALSE(scene.contact.revise(x, MinimiserProgress::kSettled));
+}
+
 TEST(Contact, IgnoresTruncatedForcesInFrictionButWarmStartsWithThem)
 {
     RisingPlate scene;

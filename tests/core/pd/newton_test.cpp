@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -129,6 +130,25 @@ TEST(Newton, DoesNotConvergeByDirectionsThatContactKeepsCorrecting)
     ChatteringSpace space(kTolerance);
     EXPECT_FALSE(minimise(space).converged);
     EXPECT_GT(space.corrections, 0);
+}
+
+/// Where each look finds other pairs, small steps in succession converge, and a look that asks for more goes
+/// on.
+TEST(Newton, SettlesAlthoughEachLookFindsOtherPairs)
+{
+    SpringSpace space(1.0, 0.0);
+    std::vector<MinimiserProgress> looks;
+    int more = 2;
+    const auto look = [&](MinimiserProgress progress) {
+        looks.push_back(progress);
+        return progress != MinimiserProgress::kSettled || more-- > 0;
+    };
+    const OuterLoop::Outcome outcome = Newton::minimise(space, {kTolerance, 200, kDt, false}, look, false);
+    EXPECT_TRUE(outcome.converged);
+    ASSERT_EQ(looks.size(), 7u); // a long step, three small ones, and three that have settled
+    EXPECT_EQ(looks[0], MinimiserProgress::kFar);
+    EXPECT_EQ(looks[3], MinimiserProgress::kConverged);
+    EXPECT_EQ(looks[4], MinimiserProgress::kSettled);
 }
 
 /// A step longer than 0.2 m is moved back, twice as far as it had gone to the other side of its start.
