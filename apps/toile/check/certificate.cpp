@@ -260,6 +260,10 @@ std::string to_json(const Certificate& certificate)
 
 std::string summary_of(const Certificate& certificate)
 {
+    const auto is_soft_body = [&](const Certificate::Cloth& cloth) {
+        return std::any_of(certificate.soft_bodies.begin(), certificate.soft_bodies.end(),
+                           [&](const Certificate::SoftBody& body) { return body.name == cloth.name; });
+    };
     if (!certificate.holds()) {
         std::string why;
         if (certificate.frames != certificate.frames_expected)
@@ -271,15 +275,19 @@ std::string summary_of(const Certificate& certificate)
         return "the certificate does not hold" + why + text_of(certificate.soft_bodies);
     }
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "certificate holds for %d frames: no crossings, %.3g mm deep at most, strain %.3g %%",
-                  certificate.frames, 1e3 * certificate.worst.penetration, 1e2 * certificate.worst.strain);
+    std::snprintf(text, sizeof text, "certificate holds for %d frames: no crossings, %.3g mm deep at most",
+                  certificate.frames, 1e3 * certificate.worst.penetration);
     std::string left_out;
+    if (!std::all_of(certificate.cloths.begin(), certificate.cloths.end(), is_soft_body)) {
+        char strain[64];
+        std::snprintf(strain, sizeof strain, ", strain %.3g %%", 1e2 * certificate.worst.strain);
+        left_out = strain;
+    }
     if (certificate.worst.attached_strain > certificate.worst.strain) {
         char pulled[64];
         std::snprintf(pulled, sizeof pulled, ", %.3g %% between attached vertices",
                       1e2 * certificate.worst.attached_strain);
-        left_out = pulled;
+        left_out += pulled;
     }
     if (certificate.pinched_frames > 0)
         left_out +=

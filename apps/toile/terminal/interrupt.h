@@ -7,8 +7,8 @@
 namespace toile::app {
 
 /// Scope in which the first Ctrl-C (SIGINT), SIGTERM or SIGHUP only sets a flag, so that a run can
-/// end in order. The second one ends the program as usual. Signals that the caller ignores (nohup) stay
-/// ignored.
+/// end in order. One that comes half a second later, or more, ends the program as usual. Signals that the
+/// caller ignores (nohup) stay ignored.
 class InterruptGuard {
 public:
     InterruptGuard();
