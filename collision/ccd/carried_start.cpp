@@ -22,9 +22,10 @@ constexpr int kReleases = 8;
 /// again.
 constexpr double kTaken = 0.95;
 
-/// Gap that a push restores, relative to the minimum gap [-]; bounds of a push and of all pushes of a vertex
-/// in a part [m]. Unbounded, cloth between two bodies would be shot out.
-constexpr double kRestoredGap = 1.1;
+/// Gap that a push restores, and the least push, relative to the minimum gap [-]: a pair may come too near on
+/// its way although it ends at that gap, as edges that turn do. Bounds of a push and of all pushes of a
+/// vertex in a part [m]: unbounded, cloth between two bodies would be shot out.
+constexpr double kRestoredGap = 1.1, kLeastPush = 0.25;
 constexpr double kMaxPush = 0.002, kMaxPushed = 0.01;
 
 /// Hides pairs with bodies, which the limiter could only answer by stopping the bodies.
@@ -172,10 +173,9 @@ void CarriedStart::push(const NearPair& pair, const Vec3& direction)
     std::array<Vec3, 4> end;
     for (int k = 0; k < 4; ++k)
         end[k] = end_[pair.vertex[k]];
-    const double kept = std::min(kRestoredGap * gap_.of(pair), pair.distance);
-    const double lacking = std::min(kept - gap_along(direction, pair.is_edge_edge, end), kMaxPush);
-    if (!(lacking > 0.0))
-        return;
+    const double gap = gap_.of(pair), kept = std::min(kRestoredGap * gap, pair.distance);
+    const double lacking =
+        std::min(std::max(kept - gap_along(direction, pair.is_edge_edge, end), kLeastPush * gap), kMaxPush);
     const double side = pair.vertex[0] < first_prescribed_ ? 1.0 : -1.0;
     for (const int v : pair.vertex)
         if (v < first_prescribed_ && pushed_[v] + lacking <= kMaxPushed) {

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
+
+#include <Eigen/Geometry>
 
 #include "collision/ccd/cpu/ccd_search.h"
 #include "collision/check/find_crossings.h"
@@ -57,6 +60,16 @@ struct Press {
     std::vector<CarriedStart::StuckPair> carry(const std::vector<Vec3>& motion,
                                                const CarriedStart::Release& release)
     {
+        std::vector<Vec3> end(x.begin() + cloth_vertices, x.end());
+        for (size_t v = 0; v < end.size(); ++v)
+            end[v] += motion[v / 8];
+        return carry_to(end, release);
+    }
+
+    /// Carries the cloth while the bodies move to `end`.
+    std::vector<CarriedStart::StuckPair> carry_to(const std::vector<Vec3>& end,
+                                                  const CarriedStart::Release& release)
+    {
         triangles = cloth;
         triangles.insert(triangles.end(), body.begin(), body.end());
         std::vector<int> rigid(x.size(), -1);
@@ -68,9 +81,6 @@ struct Press {
         const std::vector<double> slack(x.size(), 1e-4);
         CpuCcdSearch search(near, exempt, settings.gap(), slack);
         CarriedStart carried(search, near.edges(), settings, {});
-        std::vector<Vec3> end(x.begin() + cloth_vertices, x.end());
-        for (size_t v = 0; v < end.size(); ++v)
-            end[v] += motion[v / 8];
         carried.carry(x, std::vector<Vec3>(cloth_vertices, Vec3::Zero()), end,
                       std::vector<unsigned char>(x.size(), 0), release);
         for (size_t v = 0; v < end.size(); ++v)
@@ -105,6 +115,24 @@ TEST(CarriedStart, TakesLayersBeneathAlongToo)
     Press press(3);
     EXPECT_TRUE(press.carry({Vec3(0.0, -0.03, 0.0)}, kNothing).empty());
     EXPECT_EQ(press.crossings(), 0);
+}
+
+/// Edges that turn come nearer on their way than at its ends.
+TEST(CarriedStart, TakesClothAlongWithABodyThatTurns)
+{
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    for (int k = 0; k < 200; ++k) {
+        Press press(1 + k % 3, 0.003);
+        const Vec3 axis = Vec3(uniform(random), uniform(random), uniform(random)).normalized();
+        const Eigen::AngleAxisd turn(0.3 * uniform(random), axis);
+        const Vec3 centre(0.0, 0.028, 0.0), way(0.01 * uniform(random), -0.01, 0.01 * uniform(random));
+        std::vector<Vec3> end(press.x.begin() + press.cloth_vertices, press.x.end());
+        for (Vec3& at : end)
+            at = centre + way + turn * (at - centre);
+        EXPECT_TRUE(press.carry_to(end, kNothing).empty()) << k;
+        EXPECT_EQ(press.crossings(), 0) << k;
+    }
 }
 
 TEST(CarriedStart, LeavesClothWhereNothingMeetsIt)
