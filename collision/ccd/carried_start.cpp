@@ -22,11 +22,14 @@ constexpr int kReleases = 8;
 /// again.
 constexpr double kTaken = 0.95;
 
-/// Gap that a push restores, and the least push, relative to the minimum gap [-]: a pair may come too near on
-/// its way although it ends at that gap, as edges that turn do. Bounds of a push and of all pushes of a
-/// vertex in a part [m]: unbounded, cloth between two bodies would be shot out.
-constexpr double kRestoredGap = 1.1, kLeastPush = 0.25;
+/// Gap that a push restores, relative to the minimum gap [-]; bounds of a push and of all pushes of a vertex
+/// in a part [m]. Unbounded, cloth between two bodies would be shot out.
+constexpr double kRestoredGap = 1.1;
 constexpr double kMaxPush = 0.002, kMaxPushed = 0.01;
+
+/// Least push, relative to the minimum gap [-], where all pairs that are left end at the gap to be restored:
+/// they come too near on their way, as edges that turn do.
+constexpr double kLeastPush = 0.25;
 
 /// Hides pairs with bodies, which the limiter could only answer by stopping the bodies.
 class ClothQuery : public CcdQuery {
@@ -100,9 +103,11 @@ CarriedStart::Part CarriedStart::try_part(View<Vec3> x, double from, double to, 
     }
     for (int round = 0; round < kRounds && !blocked.empty(); ++round) {
         const std::vector<BlockedPair> now(blocked.begin(), blocked.end());
-        for (const BlockedPair& pair : now)
-            if (is_with_body(pair.pair, first_prescribed_))
-                divert(pair, x);
+        for (const double least_push : {0.0, kLeastPush})
+            if (changed_.items().empty())
+                for (const BlockedPair& pair : now)
+                    if (is_with_body(pair.pair, first_prescribed_))
+                        divert(pair, x, least_push);
         std::vector<ChangedTrajectory> changes;
         for (const int v : changed_.items())
             changes.push_back({v, end_[v] - x[v], 0.0});
@@ -139,7 +144,7 @@ void CarriedStart::change(int v, const Vec3& end)
 }
 
 /// Lets the cloth of a pair go on with the body from the time of contact. If it does so already, pushes it.
-void CarriedStart::divert(const BlockedPair& blocked, View<const Vec3> x)
+void CarriedStart::divert(const BlockedPair& blocked, View<const Vec3> x, double least_push)
 {
     const NearPair& pair = blocked.pair;
     std::array<Vec3, 4> at;
@@ -156,7 +161,8 @@ void CarriedStart::divert(const BlockedPair& blocked, View<const Vec3> x)
             rides = rides && rides_[v] != 0;
     }
     if (rides) {
-        push(pair, separating_direction(pair.is_edge_edge, at, weight, closest_difference(weight, at)));
+        push(pair, separating_direction(pair.is_edge_edge, at, weight, closest_difference(weight, at)),
+             least_push * gap_.of(pair));
         return;
     }
     const double kept = kTaken * blocked.fraction;
@@ -168,14 +174,17 @@ void CarriedStart::divert(const BlockedPair& blocked, View<const Vec3> x)
 }
 
 /// @param direction  from the pair's second primitive to its first, unit
-void CarriedStart::push(const NearPair& pair, const Vec3& direction)
+/// @param least      [m]
+void CarriedStart::push(const NearPair& pair, const Vec3& direction, double least)
 {
     std::array<Vec3, 4> end;
     for (int k = 0; k < 4; ++k)
         end[k] = end_[pair.vertex[k]];
-    const double gap = gap_.of(pair), kept = std::min(kRestoredGap * gap, pair.distance);
+    const double kept = std::min(kRestoredGap * gap_.of(pair), pair.distance);
     const double lacking =
-        std::min(std::max(kept - gap_along(direction, pair.is_edge_edge, end), kLeastPush * gap), kMaxPush);
+        std::min(std::max(kept - gap_along(direction, pair.is_edge_edge, end), least), kMaxPush);
+    if (!(lacking > 0.0))
+        return;
     const double side = pair.vertex[0] < first_prescribed_ ? 1.0 : -1.0;
     for (const int v : pair.vertex)
         if (v < first_prescribed_ && pushed_[v] + lacking <= kMaxPushed) {

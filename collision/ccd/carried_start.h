@@ -50,8 +50,8 @@ private:
     void go(View<Vec3> x, double from, double to);
     enum class Part { kDone, kReleased, kBlocked };
     Part try_part(View<Vec3> x, double from, double to, bool may_release);
-    void divert(const BlockedPair& blocked, View<const Vec3> x);
-    void push(const NearPair& pair, const Vec3& direction);
+    void divert(const BlockedPair& blocked, View<const Vec3> x, double least_push);
+    void push(const NearPair& pair, const Vec3& direction, double least);
     void change(int v, const Vec3& end);
     View<const BlockedPair> between_cloths(View<const BlockedPair> blocked);
 
