@@ -131,7 +131,7 @@ bool Contact::revise(StepField x, MinimiserProgress progress)
     if (terms_->has_left(kTrust) || has_new_pairs) {
         terms_->remember(RememberedSlip::kByStart);
         find_again();
-        if (progress != MinimiserProgress::kSettled)
+        if (progress != MinimiserProgress::kSettled || is_limited)
             return true;
     }
     return has_landed || has_sunk || (is_limited && sums.short_count > 0);

@@ -75,7 +75,7 @@ public:
     /// Called after every minimisation. Refreshes lagged quantities (friction limits) if x is converged, and
     /// searches again if x left the neighbourhood of the candidates. Moves x [vertices] back if it violates
     /// the invariants of keep_apart(); where nothing is near, only once x is converged. True if the energy
-    /// changed enough to minimise again: once it has settled, by more than a search does.
+    /// changed enough to minimise again; once x has settled, by more than other candidates.
     /// @param progress  converged, settled: the minimisation was not cut short, and forces at x exceed its
     ///                  residual
     virtual bool revise(StepField x, MinimiserProgress progress) = 0;
