@@ -103,11 +103,14 @@ CarriedStart::Part CarriedStart::try_part(View<Vec3> x, double from, double to, 
     }
     for (int round = 0; round < kRounds && !blocked.empty(); ++round) {
         const std::vector<BlockedPair> now(blocked.begin(), blocked.end());
-        for (const double least_push : {0.0, kLeastPush})
-            if (changed_.items().empty())
-                for (const BlockedPair& pair : now)
-                    if (is_with_body(pair.pair, first_prescribed_))
-                        divert(pair, x, least_push);
+        const auto divert_all = [&](double least_push) {
+            for (const BlockedPair& pair : now)
+                if (is_with_body(pair.pair, first_prescribed_))
+                    divert(pair, x, least_push);
+        };
+        divert_all(0.0);
+        if (changed_.items().empty())
+            divert_all(kLeastPush);
         std::vector<ChangedTrajectory> changes;
         for (const int v : changed_.items())
             changes.push_back({v, end_[v] - x[v], 0.0});
@@ -144,6 +147,7 @@ void CarriedStart::change(int v, const Vec3& end)
 }
 
 /// Lets the cloth of a pair go on with the body from the time of contact. If it does so already, pushes it.
+/// @param least_push  see kLeastPush
 void CarriedStart::divert(const BlockedPair& blocked, View<const Vec3> x, double least_push)
 {
     const NearPair& pair = blocked.pair;

@@ -249,8 +249,8 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
             outcome.converged = outcome.converged &&
                                 (small >= small_steps || step == 0.0 || small_with_any_pairs >= kSettled);
         }
-        const bool has_changed =
-            revise && revise(progress_of(outcome, settings.tolerance, small_with_any_pairs >= kSettled));
+        const bool has_settled = small_with_any_pairs >= kSettled;
+        const bool has_changed = revise && revise(progress_of(outcome, settings.tolerance, has_settled));
         if (!has_changed && (outcome.converged || step == 0.0))
             break;
         outcome.converged = false;
