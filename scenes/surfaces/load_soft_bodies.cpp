@@ -10,6 +10,7 @@
 #include "core/mesh/weld.h"
 #include "scenes/meshes/rigid_motion.h"
 #include "volume/mesh/msh.h"
+#include "volume/mesh/vertex_order.h"
 #include "volume/mesh/vtk.h"
 #include "volume/meshing/fill_surface.h"
 
@@ -24,7 +25,7 @@ struct RestMesh {
     std::vector<int> of_file; ///< see LoadedSoftBody
 };
 
-/// Numbers the vertices of the surface first; both parts keep their order.
+/// Numbers the vertices of the surface first, both parts in volume::vertex_order().
 RestMesh with_surface_first(volume::TetMesh mesh)
 {
     std::vector<Triangle> surface = volume::boundary_triangles(mesh.tets);
@@ -32,11 +33,12 @@ RestMesh with_surface_first(volume::TetMesh mesh)
     for (const Triangle& face : surface)
         for (const int v : face)
             is_on_surface[v] = 1;
+    const std::vector<int> order = volume::vertex_order(mesh);
     int next = 0;
     std::vector<int> number(mesh.positions.size());
     std::vector<Vec3> positions(mesh.positions.size());
     for (const char part : {1, 0})
-        for (size_t v = 0; v < number.size(); ++v)
+        for (const int v : order)
             if (is_on_surface[v] == part) {
                 positions[next] = mesh.positions[v];
                 number[v] = next++;

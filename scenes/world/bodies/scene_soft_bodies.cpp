@@ -12,6 +12,7 @@
 #include "scenes/colliders/vertex_owner.h"
 #include "scenes/surfaces/load_cloth.h"
 #include "volume/energy/harmonic.h"
+#include "volume/mesh/vertex_order.h"
 
 namespace toile::scenes {
 
@@ -38,6 +39,7 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
         body.velocity = settings.velocity;
         body.surface = std::move(loaded[i].surface);
         body.rest = std::move(loaded[i].rest);
+        volume::sort_by_vertex(body.rest.tets);
         body.positions = std::move(loaded[i].positions);
         body.render = std::move(loaded[i].render);
         next_surface += body.surface_count();

@@ -34,6 +34,7 @@ DeviceHierarchy::DeviceHierarchy(const CudaSpace& space, const ClusterHierarchy&
       couplings_(space, "hierarchy/couplings",
                  int(clusters.neighbours().size()) * clusters.unknown_count() * clusters.unknown_count()),
       restricted_(space, "hierarchy/restricted", clusters.cluster_count() * clusters.unknown_count()),
+      to_regions_(space, "hierarchy/to_regions", clusters.cluster_count() * clusters.unknown_count()),
       of_clusters_(space, "hierarchy/of_clusters", clusters.cluster_count() * clusters.unknown_count()),
       of_regions_(space, "hierarchy/of_regions", clusters.region_count() * clusters.unknown_count())
 {
@@ -87,12 +88,13 @@ void DeviceHierarchy::solve()
     const HierarchyView clusters = view();
     parallel_for_blocks<MultiplyInverses::kThreads>(
         space_, "hierarchy/solve", clusters.matrices.tile_rows.size(), MultiplyInverses::kBytes,
-        MultiplyInverses{clusters, restricted_.view(), of_clusters_.view(), of_regions_.view()});
+        MultiplyInverses{clusters, restricted_.view(), to_regions_.view(), of_clusters_.view(),
+                         of_regions_.view()});
 }
 
 ClusterFields DeviceHierarchy::fields()
 {
-    return {view(), restricted_.view(), of_clusters_.view(), of_regions_.view()};
+    return {view(), restricted_.view(), to_regions_.view(), of_clusters_.view(), of_regions_.view()};
 }
 
 } // namespace toile

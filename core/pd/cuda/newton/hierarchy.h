@@ -45,9 +45,9 @@ private:
     DeviceArray<int> first_region_, component_of_, region_of_;
     DeviceArray<ClusterHierarchy::Transfer> transfers_;
     DeviceArray<ClusterHierarchy::Range> clusters_of_region_;
-    BatchedInverses inverses_;                                 ///< see HierarchyView
-    DeviceArray<double> couplings_;                            ///< see AssembleClusters
-    DeviceArray<float> restricted_, of_clusters_, of_regions_; ///< see MultiplyInverses
+    BatchedInverses inverses_;                                              ///< see HierarchyView
+    DeviceArray<double> couplings_;                                         ///< see AssembleClusters
+    DeviceArray<float> restricted_, to_regions_, of_clusters_, of_regions_; ///< see ClusterFields
 };
 
 } // namespace toile

@@ -2,6 +2,8 @@
 
 /// Kernels of DeviceHierarchy: assembly of the coarse matrices, and application of their inverses.
 
+#include <array>
+
 #include "core/compute/team.h"
 #include "core/linear/cuda/batched_inverses_kernels.h"
 #include "core/pd/cuda/newton/cluster_hierarchy.h"
@@ -216,8 +218,7 @@ struct AssembleRegions {
     }
 };
 
-/// Products of the inverses with a restricted field, by tile rows. Components restrict it themselves from
-/// clusters to regions.
+/// Products of the inverses with a restricted field, by tile rows.
 struct MultiplyInverses {
     static constexpr int kRows = MatrixBatch::kTile;
     static constexpr int kGroups = 24; ///< of threads that share four rows
@@ -227,21 +228,16 @@ struct MultiplyInverses {
     static constexpr std::size_t kBytes = sizeof(float) * (kMaxSize + kGroups * kRows);
 
     HierarchyView clusters;
-    View<const float> restricted;        ///< [clusters][unknowns]
-    View<float> of_clusters, of_regions; ///< [clusters], [regions][unknowns] out
+    View<const float> restricted, to_regions; ///< see ClusterFields
+    View<float> of_clusters, of_regions;      ///< [clusters], [regions][unknowns] out
 
-    /// The inverse, which does not change.
-    struct Prologue {
-        Floats<4> part[kColumns];
-    };
+    /// The first columns of the inverse, which does not change.
+    using Prologue = std::array<Floats<4>, kColumns>;
+
     template <typename Block>
     TOILE_HD Prologue prologue(int item, const Block& block) const
     {
-        Prologue local;
-        const int stride = stride_of(item);
-        for (int k = 0; k < kColumns; ++k)
-            local.part[k] = part(item, block.thread, group(block) + kGroups * k, stride);
-        return local;
+        return columns_from(item, block.thread, group(block), stride_of(item));
     }
 
     template <typename Block>
@@ -257,15 +253,19 @@ struct MultiplyInverses {
         const MatrixTile tile = clusters.matrices.tile_rows[item];
         const int stride = stride_of(item), component = tile.matrix - clusters.block_count();
         const int size = component < 0 ? load_block(block, tile.matrix, stride, x)
-                                       : restrict_to(block, component, stride, x);
+                                       : load_component(block, component, stride, x);
         block.wait();
 
         Floats<4> sum(0.0F);
-        for (int k = 0; k < kColumns; ++k)
-            if (const int column = group(block) + kGroups * k; column < stride)
-                sum += x[column] * local.part[k];
-        for (int column = group(block) + kGroups * kColumns; column < stride; column += kGroups)
-            sum += x[column] * part(item, block.thread, column, stride);
+        const auto add = [&](int first, const Prologue& columns) {
+            for (int k = 0; k < kColumns; ++k)
+                if (const int column = first + kGroups * k; column < stride)
+                    sum += x[column] * columns[k];
+        };
+        add(group(block), local);
+        constexpr int kAtOnce = kGroups * kColumns;
+        for (int first = group(block) + kAtOnce; first < stride; first += kAtOnce)
+            add(first, columns_from(item, block.thread, first, stride));
         for (int k = 0; k < 4; ++k)
             sums[group(block) * kRows + 4 * rows(block.thread) + k] = sum[k];
         block.wait();
@@ -292,6 +292,14 @@ private:
     {
         return clusters.matrices.matrices[clusters.matrices.tile_rows[item].matrix].stride();
     }
+    /// Parts of every kGroups-th column.
+    TOILE_HD Prologue columns_from(int item, int thread, int first, int stride) const
+    {
+        Prologue columns;
+        for (int k = 0; k < kColumns; ++k)
+            columns[k] = part(item, thread, first + kGroups * k, stride);
+        return columns;
+    }
     /// Four rows of a column: the inverse is symmetric.
     TOILE_HD Floats<4> part(int item, int thread, int column, int stride) const
     {
@@ -313,23 +321,20 @@ private:
         return size;
     }
     template <typename Block>
-    TOILE_HD int restrict_to(const Block& block, int component, int stride, float* x) const
+    TOILE_HD int load_component(const Block& block, int component, int stride, float* x) const
     {
         const int first = clusters.first_region[component], unknowns = clusters.unknowns();
         const int size = unknowns * (clusters.first_region[component + 1] - first);
         for (int k = block.thread; k < stride; k += kThreads)
-            x[k] = k < size ? unknown_of(first + k / unknowns, k % unknowns) : 0.0F;
+            x[k] = k < size ? of_region(first + k / unknowns, k % unknowns) : 0.0F;
         return size;
     }
-    TOILE_HD float unknown_of(int region, int unknown) const
+    TOILE_HD float of_region(int region, int unknown) const
     {
-        const int b = unknown / 3, alpha = unknown % 3;
         const ClusterHierarchy::Range range = clusters.clusters_of_region[region];
         float sum = 0.0F;
         for (int c = range.first; c < range.end; ++c)
-            for (int a = 0; a < clusters.functions_of_cluster; ++a)
-                sum +=
-                    clusters.transfers[c].entry[a][b] * restricted[clusters.unknowns() * c + 3 * a + alpha];
+            sum += to_regions[clusters.unknowns() * c + unknown];
         return sum;
     }
 };
@@ -339,8 +344,9 @@ struct ClusterFields {
     static constexpr int kMaxFunctions = HierarchyView::kMaxFunctions;
 
     HierarchyView clusters;
-    View<float> restricted;                    ///< see MultiplyInverses
-    View<const float> of_clusters, of_regions; ///< likewise
+    View<float> restricted; ///< [clusters][unknowns]
+    View<float> to_regions; ///< [clusters][unknowns] what each adds to its region's restriction
+    View<const float> of_clusters, of_regions; ///< see MultiplyInverses
 
     /// Coefficients of the functions at a cluster's vertices: the sum of both parts.
     struct Coefficients {
@@ -374,7 +380,8 @@ struct ClusterFields {
     }
 
     static constexpr int kThreads = ClusterHierarchy::kClusterSize; ///< of a block: one for a vertex
-    static constexpr std::size_t kBytes = sizeof(float) * HierarchyView::kMaxUnknowns * (kThreads / kWarp);
+    static constexpr int kWarps = kThreads / kWarp;
+    static constexpr std::size_t kBytes = sizeof(float) * HierarchyView::kMaxUnknowns * (kWarps + 1);
 
     /// Restricts the field, whose value at vertex i belongs to this thread, to cluster c.
     template <typename Block>
@@ -392,15 +399,29 @@ struct ClusterFields {
                         of_warps[block.thread / kWarp * unknowns + 3 * b + k] = sum;
                 }
         block.wait();
-        if (block.thread >= unknowns)
-            return;
-        float total = 0.0F;
-        for (int w = 0; w < kThreads / kWarp; ++w)
-            total += of_warps[w * unknowns + block.thread];
-        restricted[unknowns * c + block.thread] = total;
+        float* const of_cluster = of_warps + kWarps * unknowns;
+        if (block.thread < unknowns) {
+            float total = 0.0F;
+            for (int w = 0; w < kWarps; ++w)
+                total += of_warps[w * unknowns + block.thread];
+            of_cluster[block.thread] = restricted[unknowns * c + block.thread] = total;
+        }
+        block.wait();
+        if (block.thread < unknowns && clusters.region_of[c] >= 0)
+            to_regions[unknowns * c + block.thread] =
+                part_of_region(clusters.transfers[c], of_cluster, block.thread);
     }
 
 private:
+    /// Unknown of a region that functions of a cluster make.
+    TOILE_HD float part_of_region(const ClusterHierarchy::Transfer& transfer, const float* of_cluster,
+                                  int unknown) const
+    {
+        float sum = 0.0F;
+        for (int a = 0; a < clusters.functions_of_cluster; ++a)
+            sum += transfer.entry[a][unknown / 3] * of_cluster[3 * a + unknown % 3];
+        return sum;
+    }
     TOILE_HD PaddedVec3 load(View<const float> solution, int of, int b) const
     {
         const float* const y = solution.data() + clusters.unknowns() * of + 3 * b;
