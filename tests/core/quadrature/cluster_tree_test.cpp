@@ -51,9 +51,9 @@ TEST(ClusterTree, GroupsABodyInOneWayHoweverItLies)
     EXPECT_EQ(clusters.size(), 16U);
     for (const double angle : {0.4, 1.7, 3.1, 5.0}) {
         const Eigen::AngleAxisd turn(angle, Vec3(1.0, -2.0, 0.5).normalized());
-        std::vector<Vec3> placed;
-        for (const Vec3& x : upright)
-            placed.push_back(turn * x + Vec3(0.3, angle, -1.0));
+        std::vector<Vec3> placed = upright;
+        for (Vec3& x : placed)
+            x = turn * x + Vec3(0.3, angle, -1.0);
         EXPECT_EQ(clusters_of(placed), clusters) << "turned by " << angle;
     }
 }
