@@ -42,20 +42,6 @@ double squared_radius(View<const EmbeddedPoint> points, View<const int> nodes)
     return largest;
 }
 
-/// The one of two opposite directions in which some nodes reach far. It turns with the nodes, so that
-/// clusters do not depend on how a body lies.
-EmbeddedPoint towards_the_thin_end(const EmbeddedPoint& axis, const EmbeddedPoint& center,
-                                   View<const EmbeddedPoint> points, View<const int> nodes)
-{
-    double sum = 0.0, size = 0.0; // [m^3] third moment
-    for (const int v : nodes) {
-        const double along = axis.dot(points[v] - center);
-        sum += along * along * along;
-        size += std::abs(along * along * along);
-    }
-    return sum < -kFlat * size ? EmbeddedPoint(-axis) : axis;
-}
-
 } // namespace
 
 ClusterTree::ClusterTree(View<const EmbeddedPoint> points, std::vector<int> nodes, Extent extent)
@@ -128,8 +114,7 @@ ClusterTree::Cluster ClusterTree::measure(View<const EmbeddedPoint> points, View
     const double widest = std::sqrt(std::max(eigen.eigenvalues()[5], 0.0));
     for (int k = 0; k < rank_of(extent) - 1; ++k)
         if (widest > 0.0 && std::sqrt(std::max(eigen.eigenvalues()[5 - k], 0.0)) > kFlat * widest)
-            cluster.axes.col(k) =
-                towards_the_thin_end(eigen.eigenvectors().col(5 - k), cluster.center, points, nodes);
+            cluster.axes.col(k) = eigen.eigenvectors().col(5 - k);
     return cluster;
 }
 
