@@ -10,8 +10,11 @@
 #include "core/base/extension.h"
 #include "core/base/file_plan.h"
 #include "core/base/number.h"
+#include "core/mesh/clean.h"
 #include "core/mesh/obj.h"
 #include "core/mesh/solid_moments.h"
+#include "scenes/format/field.h"
+#include "scenes/format/scene.h"
 #include "volume/mesh/msh.h"
 #include "volume/mesh/quality.h"
 #include "volume/meshing/fill_surface.h"
@@ -24,6 +27,7 @@ struct MeshOptions {
     std::filesystem::path surface;
     std::filesystem::path output;
     double cell = 0.0; ///< [m]
+    std::string unit = "m"; ///< of the surface
     bool json = false;
 };
 
@@ -44,7 +48,10 @@ void require_valid(const MeshOptions& options)
 int mesh(const MeshOptions& options)
 {
     require_valid(options);
-    const TriangleMesh surface = read_obj(options.surface).triangulated();
+    TriangleMesh surface = stitched_surface(read_obj(options.surface));
+    const double scale = scene::metres_per(scene_format::value_of<scene::LengthUnit>(options.unit));
+    for (Vec3& p : surface.positions)
+        p *= scale;
     const std::string source = options.surface.string();
     require_usable(surface, source);
     const volume::TetMesh tets = volume::fill_surface(surface, options.cell, source);
@@ -80,9 +87,11 @@ Command add_mesh(CLI::App& parser)
     command.options = parser.add_subcommand("mesh", "Fill a closed surface with tetrahedra, for soft bodies");
     auto options = std::make_shared<MeshOptions>();
     CLI::App& add = *command.options;
-    add.add_option("surface", options->surface, "Closed surface (.obj) [m]")->required();
+    add.add_option("surface", options->surface, "Closed surface (.obj)")->required();
     add.add_option("-o,--output", options->output, "Tetrahedra to write (.msh of Gmsh)")->required();
     add.add_option("--cell", options->cell, "Length of edges [m]")->required();
+    add.add_option("--unit", options->unit, "Unit of the surface; tetrahedra are written in metres [m]")
+        ->check(CLI::IsMember(scene_format::words_of<scene::LengthUnit>()));
     add.add_flag("--json", options->json, "Print JSON instead of a line");
     command.run = [options] { return mesh(*options); };
     return command;

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/number.h"
 #include "core/compute/parallel.h"
+#include "core/mesh/point_text.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/time/sample_times.h"
 
@@ -107,9 +107,8 @@ CachedAvatar::Positions CachedAvatar::read(int index) const
         x[v] = apply(cache_.metres_from_file, stored);
         if (!is_in_range(x[v]))
             throw InvalidInput(source() + ": vertex " + std::to_string(v) + " of sample " +
-                               std::to_string(index) + " is at (" + short_text(stored.x()) + ", " +
-                               short_text(stored.y()) + ", " + short_text(stored.z()) +
-                               "); coordinates must be finite and at most 100 km; export it again");
+                               std::to_string(index) + " is at " + point_text(stored) +
+                               "; coordinates must be finite and at most 100 km; export it again");
     }
     return x;
 }

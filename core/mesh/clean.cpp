@@ -157,6 +157,26 @@ std::vector<int> stitch(ObjMesh& mesh, double distance)
     return stands;
 }
 
+double seam_distance(const ObjMesh& mesh)
+{
+    Bounds box; // loose vertices may lie anywhere
+    for (const std::vector<int>& polygon : mesh.polygons)
+        for (const int v : polygon)
+            box.extend(mesh.positions[v]);
+    return 1e-6 * box.diagonal();
+}
+
+TriangleMesh stitched_surface(ObjMesh mesh)
+{
+    const std::vector<int> stands = stitch(mesh, seam_distance(mesh));
+    for (int v = 0; v < int(stands.size()); ++v)
+        if (stands[v] != v) {
+            drop_loose_vertices(mesh);
+            break;
+        }
+    return mesh.triangulated();
+}
+
 void drop_repeated_lines(ObjMesh& mesh)
 {
     std::set<std::pair<int, int>> seen;

@@ -23,6 +23,12 @@ int drop_repeated_corners(ObjMesh& mesh);
 /// @return [vertices] vertex that stands for each: itself, or a lower one
 std::vector<int> stitch(ObjMesh& mesh, double distance);
 
+/// Distance [m] at which two vertices of a file are one: 1e-6 of the diagonal of the box around all polygons.
+double seam_distance(const ObjMesh& mesh);
+
+/// Triangles of a surface that is closed once its seams are stitched; without the vertices that this frees.
+TriangleMesh stitched_surface(ObjMesh mesh);
+
 /// Drops lines between the ends of an earlier one, in any direction.
 void drop_repeated_lines(ObjMesh& mesh);
 

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/base/error.h"
+#include "core/mesh/point_text.h"
 #include "core/mesh/topology.h"
 
 namespace toile {
@@ -21,9 +22,9 @@ void require_closed(const TriangleMesh& surface, const std::string& source)
     const Topology topology = build_topology(surface.triangles, surface.vertex_count(), source);
     for (const Edge& edge : topology.edges)
         if (edge.is_border())
-            throw InvalidInput(source + ": edge (" + std::to_string(edge.vertex[0]) + ", " +
-                               std::to_string(edge.vertex[1]) +
-                               ") has one triangle only, so there is no inside; give a closed surface");
+            throw InvalidInput(source + ": the edge from " + point_text(surface.positions[edge.vertex[0]]) +
+                               " to " + point_text(surface.positions[edge.vertex[1]]) +
+                               " has one triangle only, so there is no inside; give a closed surface");
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/number.h"
 #include "core/compute/parallel.h"
+#include "core/mesh/point_text.h"
 
 namespace toile::scenes {
 
@@ -68,8 +69,7 @@ void CoreConstraint::bind(const Vec3& start, const collision::SurfacePoint& at, 
         int nearest_corner;
         at.barycentric.maxCoeff(&nearest_corner);
         const std::string bone = body.avatar().bone_at(corners[nearest_corner]);
-        throw InvalidInput(location + ": the vertex at (" + short_text(start.x()) + ", " +
-                           short_text(start.y()) + ", " + short_text(start.z()) + ") m can't follow " +
+        throw InvalidInput(location + ": the vertex at " + point_text(start) + " m can't follow " +
                            (bone.empty() ? "the avatar" : "bone \"" + bone + "\"") +
                            ", which is flat at the start; give its bones a scale other than 0 there");
     }

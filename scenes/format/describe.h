@@ -365,7 +365,7 @@ void describe(V& v, SoftBody& s)
     v.field("damping", s.damping, between(0.0, 1000.0, "1/s"), "Decay rate of velocities.");
     v.field("velocity", s.velocity, between(-100.0, 100.0, "m/s"), "Velocity at the start.");
     v.field("friction", s.friction, between(0.0, 10.0),
-            "Coulomb coefficient if no friction pair applies; two solids use the smaller one. Absent: "
+            "Coulomb coefficient if no friction pair applies; of two bodies the smaller one holds. Absent: "
             "contact.friction, or the avatar's.");
     v.field("layer", s.layer, between(-100, 100),
             "Order of soft bodies: where they cross at the start, the repair moves the one with the higher "
@@ -427,7 +427,7 @@ void describe(V& v, Selection& s)
 template <typename V>
 void describe(V& v, Attachment& a)
 {
-    v.required("cloth", a.cloth, "Name of the cloth.");
+    v.required("cloth", a.cloth, "Name of the cloth or soft body.");
     v.required("select", a.select, "Which of its vertices.");
     v.field("to", a.to,
             "\"fixed\": attached to the world; or the name of the avatar whose surface moves them.");
@@ -446,7 +446,7 @@ template <typename V>
 void describe(V& v, FrictionPair& p)
 {
     v.required("between", p.between,
-               "Two names of fabrics, avatars or solids; the same name twice for a fabric on itself.");
+               "Two names of fabrics, avatars, solids or soft bodies; the same name twice for contact with itself.");
     v.required("friction", p.friction, between(0.0, 10.0), "Coulomb coefficient.");
 }
 
@@ -454,11 +454,11 @@ template <typename V>
 void describe(V& v, Contact& c)
 {
     v.field("gap", c.gap, between(0.0, 0.1, "m"),
-            "Distance kept between cloth or solid and avatar, plus half the cloth's thickness. Two cloths "
-            "keep their thickness instead; a solid adds half of this value.");
+            "Distance kept between cloth, solid or soft body and avatar, plus half the cloth's thickness. Two "
+            "cloths keep their thickness instead; a solid or soft body adds half of this value.");
     v.field("stiffness", c.stiffness, between(0.001, 1000.0), "Factor on the solver's default stiffness.");
     v.field("friction", c.friction, between(0.0, 10.0),
-            "Coulomb coefficient of avatars and solids without their own, and between cloths.");
+            "Coulomb coefficient of avatars, solids and soft bodies without their own, and between cloths.");
     v.field("friction_pairs", c.friction_pairs, "Friction of particular pairs of materials.");
     v.field("self", c.self, "Contact of cloth with itself and other cloth. Not with xpbd and vbd.");
     v.field("repair_start", c.repair_start,
@@ -530,8 +530,8 @@ void describe(V& v, Export& e)
     v.required("file", e.file, "Cache to write, inside the output folder; its extension gives the format.");
     v.names(
         "cloth", e.cloths,
-        "Cloths and solids to write, by name; or all. Absent: the only one, or all where the format holds "
-        "several meshes.");
+        "Cloths, solids and soft bodies to write, by name, and NAME_render of a body's render surface; or "
+        "all. Absent: the only one, or all where the format holds several meshes.");
     v.field("avatars", e.avatars, "Also write the avatars, as they are posed, in triangles.");
     v.field("start_frame", e.start_frame, between(0, 1e6),
             "Number of the first frame. Absent: 1 in formats with a time line (.abc, .usda), else 0.");
@@ -585,9 +585,9 @@ void describe(V& v, scenes::Scene& s)
             "Bodies that deform, simulated together with the cloth. Need contact.self.");
     v.field("fabrics", s.fabrics, "Fabrics of the scene's own, by name.");
     v.field("attachments", s.attachments, "Vertices attached to the world or to avatars.");
-    v.field("contact", s.contact, "Contact of cloth and solids with avatars, themselves and each other.");
+    v.field("contact", s.contact, "Contact of cloth, solids and soft bodies with avatars, themselves and each other.");
     v.field("solver", s.solver, "Accuracy and effort.");
-    v.field("export", s.exports, "Caches to write; empty: one PC2 per cloth and solid, named after it.");
+    v.field("export", s.exports, "Caches to write; empty: one PC2 per cloth, solid and soft body, named after it.");
     v.field("render", s.render, "Preview pictures.");
 }
 

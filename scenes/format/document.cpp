@@ -38,6 +38,12 @@ std::string fact_of(const Json::exception& error)
     return after_id == std::string::npos ? what : what.substr(after_id + 2);
 }
 
+std::string between_quotes(const std::string& text)
+{
+    const size_t first = text.find('\'') + 1;
+    return text.substr(first, text.rfind('\'') - first);
+}
+
 /// Line and column of a byte of the text, counted from 1 as in editors: "3:5".
 std::string line_and_column(const std::string& text, size_t byte)
 {
@@ -135,6 +141,10 @@ Json Document::parse(const std::string& text) const
         const std::string habit = habit_in(text, error.byte > 0 ? error.byte - 1 : 0);
         throw InvalidInput(source_.string() + ":" + line_and_column(text, error.byte) +
                            ": not valid JSON: " + (habit.empty() ? fact_of(error) : habit));
+    } catch (const Json::out_of_range& error) { // "number overflow parsing '1e400'"
+        const std::string number = between_quotes(fact_of(error));
+        throw InvalidInput(source_.string() + ":" + line_and_column(text, text.find(number) + 1) + ": " +
+                           number + " is out of range; give a smaller number");
     } catch (const Json::exception& error) {
         refuse("", "not valid JSON: " + fact_of(error));
     }

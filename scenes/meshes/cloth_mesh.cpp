@@ -43,22 +43,9 @@ ObjMesh cut(const scene::Cloth& cloth)
     return read_file(cloth);
 }
 
-/// Distance at which two vertices of a file are one, over the diagonal of the mesh [-].
-constexpr double kSeamDistance = 1e-6;
-
 std::string counted(std::ptrdiff_t count, const char* one, const char* many)
 {
     return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
-/// Of the box around all polygons: loose vertices may lie anywhere.
-double diagonal_of(const ObjMesh& mesh)
-{
-    Bounds box;
-    for (const std::vector<int>& polygon : mesh.polygons)
-        for (const int v : polygon)
-            box.extend(mesh.positions[v]);
-    return box.diagonal();
 }
 
 /// Joins seams and drops loose vertices. Cloth needs neither; caches need the file's vertices.
@@ -70,7 +57,7 @@ bool join_vertices(const scene::Cloth& cloth, ClothMesh& result)
     std::vector<int> stands(size_t(count), 0);
     std::iota(stands.begin(), stands.end(), 0);
     if (cloth.weld)
-        stands = stitch(mesh, kSeamDistance * diagonal_of(mesh));
+        stands = stitch(mesh, seam_distance(mesh));
     int joined = 0;
     for (int v = 0; v < count; ++v)
         joined += stands[v] != v ? 1 : 0;

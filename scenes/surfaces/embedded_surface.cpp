@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/number.h"
 #include "core/compute/parallel.h"
+#include "core/mesh/point_text.h"
 
 namespace toile::scenes {
 
@@ -140,8 +141,7 @@ EmbeddedSurface::EmbeddedSurface(View<const Vec3> points, const volume::TetMesh&
         const Vec3& p = points[v];
         const double distance = std::sqrt(nearest[size_t(v)].squared_distance);
         if (distance > longest_edge(mesh.tets[size_t(nearest[size_t(v)].tet)], mesh.positions))
-            throw InvalidInput(source + ": vertex " + std::to_string(v) + " at (" + short_text(p.x()) + ", " +
-                               short_text(p.y()) + ", " + short_text(p.z()) + ") m is " +
+            throw InvalidInput(source + ": vertex " + std::to_string(v) + " at " + point_text(p) + " m is " +
                                short_text(distance) +
                                " m outside the soft body, farther than its tetrahedra are long; give it the "
                                "axes and unit of the body's file, or more tetrahedra around it");

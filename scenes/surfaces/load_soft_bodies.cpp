@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/extension.h"
+#include "core/mesh/clean.h"
 #include "core/mesh/obj.h"
 #include "core/mesh/weld.h"
 #include "scenes/meshes/rigid_motion.h"
@@ -68,7 +69,7 @@ TriangleMesh surface_of(const scene::SoftBody& body, double scale, const std::ve
         const View<const Triangle> triangles = mesh.triangles();
         return weld({{x.begin(), x.end()}, {triangles.begin(), triangles.end()}}, 0.0).mesh;
     }
-    TriangleMesh surface = read_obj(*body.file).triangulated();
+    TriangleMesh surface = stitched_surface(read_obj(*body.file));
     for (Vec3& p : surface.positions)
         p *= scale;
     return surface;

@@ -1,6 +1,7 @@
 #include "scenes/surfaces/load_solid.h"
 
 #include "core/base/extension.h"
+#include "core/mesh/clean.h"
 #include "core/mesh/weld.h"
 #include "scenes/meshes/rigid_motion.h"
 #include "scenes/meshes/shape_mesh.h"
@@ -26,7 +27,7 @@ TriangleMesh surface_of(const scene::Solid& solid)
     if (!file)
         return weld(shape_mesh(shape_of(solid.shape), 0.0), 0.0).mesh; // welds the corners of a box
     return lower_case_extension(*file) == ".vtk" ? volume::boundary_surface(volume::read_vtk_tets(*file))
-                                                 : read_obj(*file).triangulated();
+                                                 : stitched_surface(read_obj(*file));
 }
 
 } // namespace

@@ -10,7 +10,7 @@ namespace toile::scenes {
 
 namespace {
 
-/// Coefficient of the friction pair of two fabrics, avatars or solids, if the scene has one.
+/// Coefficient of the friction pair of two fabrics or bodies, if the scene has one.
 std::optional<double> friction_between(const scene::Contact& contact, const std::string& a,
                                        const std::string& b)
 {

@@ -19,6 +19,14 @@ void write_cloth(const TemporaryFolder& folder, const std::string& name, const s
                  R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "file": ")" + name + R"(.obj"}]})");
 }
 
+/// Writes NAME.json, whose only soft body is of one triangle, with these keys.
+void write_soft_body(const TemporaryFolder& folder, const std::string& name, const std::string& keys)
+{
+    folder.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+    folder.write(name + ".json", R"({"toile": 1, "frames": 3, "cloths": [],
+"soft_bodies": [{"name": "b", "file": "triangle.obj", )" + keys + "}]}");
+}
+
 /// Writes the skinned column of the avatar tests with a joint that points to a missing node.
 void write_body_without_bone(const TemporaryFolder& folder)
 {
@@ -52,6 +60,13 @@ void fill(const TemporaryFolder& folder)
     folder.write("tets.vtk", "# vtk DataFile Version 2.0\nt\nASCII\nDATASET POLYDATA\n");
     folder.write("tets.json", R"({"toile": 1, "frames": 3, "cloths": [],
                                   "solids": [{"name": "b", "file": "tets.vtk"}]})");
+    write_soft_body(folder, "hot", R"("cell": 0.1, "young": 1e400)");
+    write_soft_body(folder, "incompressible", R"("cell": 0.1, "poisson": 0.5)");
+    write_soft_body(folder, "unfilled", R"("young": 1e4)");
+    write_soft_body(folder, "open", R"("cell": 0.1)");
+    folder.write("nan.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 nan 0\n$EndNodes\n");
+    folder.write("nan_tets.json", R"({"toile": 1, "frames": 3, "cloths": [],
+                                      "soft_bodies": [{"name": "b", "file": "nan.msh"}]})");
     write_body_without_bone(folder);
     folder.write("weightless.json", small_scene(3, R"("fabrics": {"ghost": {"areal_density": 0}})"));
     folder.write("missing.json",
@@ -115,6 +130,11 @@ const std::vector<BadRun> kBadRuns{
     {{"simulate", "archive.json"}, {"archive.obj: is no OBJ", "binary"}},
     {{"simulate", "points.json"}, {"points.fbx: can't be read"}},
     {{"simulate", "tets.json"}, {"tets.vtk:4", "'polydata'", "UNSTRUCTURED_GRID"}},
+    {{"simulate", "hot.json"}, {"hot.json:2:", "1e400", "number"}},
+    {{"simulate", "incompressible.json"}, {"incompressible.json: soft_bodies[0].poisson: 0.5", "0 to 0.49"}},
+    {{"simulate", "unfilled.json"}, {"unfilled.json: soft_bodies[0]", "cell"}},
+    {{"simulate", "open.json"}, {"triangle.obj: the edge from (0, 0, 0) to (", "give a closed surface"}},
+    {{"simulate", "nan_tets.json"}, {"nan.msh:6", "nan"}},
     {{"simulate", "bone.json"}, {"bone.gltf", "index 9 is out of bounds"}},
     {{"simulate", "weightless.json"}, {"weightless.json: fabrics.ghost.areal_density: 0", "above 0"}},
     {{"simulate", "deep.json"}, {"deep.json: is nested deeper than 64 levels"}},

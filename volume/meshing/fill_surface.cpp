@@ -1,8 +1,10 @@
 #include "volume/meshing/fill_surface.h"
 
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -18,9 +20,12 @@
 #include <CGAL/odt_optimize_mesh_3.h>
 #include <CGAL/refine_mesh_3.h>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/error.h"
 #include "core/base/number.h"
+#include "core/mesh/point_text.h"
 #include "core/mesh/solid_moments.h"
+#include "core/mesh/topology.h"
 #include "volume/mesh/short_edges.h"
 #include "volume/mesh/slivers.h"
 
@@ -74,22 +79,48 @@ void require_fillable(const TriangleMesh& surface, double volume, double cell, c
                            " m long; four across it are of " + short_text(0.25 * length) + " m");
 }
 
+/// @throws InvalidInput for two fans of triangles, each around the same vertex
+void require_one_fan_around_vertices(const TriangleMesh& surface, const std::string& source)
+{
+    const Topology topology = build_topology(surface.triangles, surface.vertex_count(), source);
+    DisjointSets fans(3 * surface.triangle_count()); // of corners
+    for (const Edge& edge : topology.edges)
+        for (const int v : edge.vertex) {
+            const auto corner_in = [&](int triangle) {
+                const Triangle& t = surface.triangles[triangle];
+                return 3 * triangle + (t[0] == v ? 0 : t[1] == v ? 1 : 2);
+            };
+            fans.join(corner_in(edge.triangle[0]), corner_in(edge.triangle[1]));
+        }
+    for (int v = 0; v < surface.vertex_count(); ++v)
+        for (const int corner : topology.corners_of_vertex.of(v))
+            if (fans.find(corner) != fans.find(topology.corners_of_vertex.of(v)[0]))
+                throw InvalidInput(source + ": parts of the surface touch in the vertex at " +
+                                   point_text(surface.positions[v]) + "; separate them");
+}
+
 Polyhedron polyhedron_of(const TriangleMesh& surface, const std::string& source)
 {
     namespace processing = CGAL::Polygon_mesh_processing;
+    require_one_fan_around_vertices(surface, source);
     std::vector<Kernel::Point_3> points;
     std::vector<std::vector<std::size_t>> faces;
     for (const Vec3& x : surface.positions)
         points.emplace_back(x.x(), x.y(), x.z());
     for (const Triangle& t : surface.triangles)
         faces.push_back({std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2])});
-    if (!processing::is_polygon_soup_a_polygon_mesh(faces))
-        throw InvalidInput(source + ": parts of the surface touch in an edge or vertex; separate them");
     Polyhedron polyhedron;
     processing::polygon_soup_to_polygon_mesh(points, faces, polyhedron);
-    if (processing::does_self_intersect(polyhedron))
-        throw InvalidInput(source +
-                           ": the surface crosses itself; a body can't be filled that has no clear inside");
+    using Face = Polyhedron::Facet_handle;
+    std::vector<std::pair<Face, Face>> crossings;
+    processing::self_intersections(polyhedron, std::back_inserter(crossings),
+                                   CGAL::parameters::maximum_number(1));
+    if (!crossings.empty()) {
+        const Kernel::Point_3& near = crossings.front().first->halfedge()->vertex()->point();
+        throw InvalidInput(source + ": the surface crosses itself near " +
+                           point_text({near.x(), near.y(), near.z()}) +
+                           "; a body can't be filled that has no clear inside");
+    }
     return polyhedron;
 }
 

@@ -76,7 +76,9 @@ int parse_and_run(int argc, char** argv, const Program& program)
         if (error.get_exit_code() == 0) // --help, --version
             return parser.exit(error);
         const std::string command = argc > 1 && argv[1][0] != '-' ? std::string(argv[1]) + " " : "";
-        throw InvalidInput(std::string(error.what()) + "; run " + program.name + " " + command + "--help");
+        const bool is_word = dynamic_cast<const CLI::ConversionError*>(&error) != nullptr;
+        throw InvalidInput(std::string(error.what()) + (is_word ? ", which takes a number" : "") + "; run " +
+                           program.name + " " + command + "--help");
     }
     const auto chosen = std::find_if(commands.begin(), commands.end(),
                                      [](const Command& command) { return command.options->parsed(); });

@@ -30,7 +30,8 @@ def draw_panel(ax, curves, figure, part):
     problem = next(key[1] for key in curves if key[0] == figure and part in key[1])
     of_problem = {key[2:]: points for key, points in curves.items() if key[:2] == (figure, problem)}
     # Methods that replace the loop have none but their line search.
-    chosen = {method: points for (method, loop), points in of_problem.items()
+    chosen = {method if loop == LOOPS[figure] else f"{method}, {loop}": points
+              for (method, loop), points in of_problem.items()
               if loop == LOOPS[figure] or (method, LOOPS[figure]) not in of_problem}
     # The paper's rule appears with the denominators that serve it better.
     chosen = {method: points for method, points in chosen.items() if method + DENOMINATORS not in chosen}
@@ -42,7 +43,7 @@ def draw_panel(ax, curves, figure, part):
     ax.set(xscale="log", yscale="log", xlabel="ms", ylim=(FLOOR / 2, 4))
     ax.set_title(f"Figure {figure}: {problem}, {LOOPS[figure]}", fontsize=8)
     ax.grid(alpha=0.3)
-    ax.legend(fontsize=6, loc="lower left")
+    ax.legend(fontsize=6)
 
 
 def main():

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/base/number.h"
 #include "core/compute/parallel.h"
+#include "core/mesh/point_text.h"
 #include "garment/energy/air/cuda/loads.h"
 #include "scenes/colliders/select_vertices.h"
 #include "scenes/colliders/vertex_owner.h"
@@ -99,9 +99,7 @@ void SceneSoftBodies::require_one_owner(const Body& body, const std::string& cor
     for (const AttachmentConstraint& attachment : body.attachments)
         owners.push_back(owner_of(attachment));
     scenes::require_one_owner(owners, body.surface.name, [&](int v) {
-        const Vec3& x = body.positions[size_t(v)];
-        return "the vertex at (" + short_text(x.x()) + ", " + short_text(x.y()) + ", " + short_text(x.z()) +
-               ") m";
+        return "the vertex at " + point_text(body.positions[size_t(v)]) + " m";
     });
 }
 
