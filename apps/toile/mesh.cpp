@@ -26,7 +26,7 @@ namespace {
 struct MeshOptions {
     std::filesystem::path surface;
     std::filesystem::path output;
-    double cell = 0.0; ///< [m]
+    double cell = 0.0;      ///< [m]
     std::string unit = "m"; ///< of the surface
     bool json = false;
 };

@@ -445,17 +445,19 @@ void describe(V& v, Attachment& a)
 template <typename V>
 void describe(V& v, FrictionPair& p)
 {
-    v.required("between", p.between,
-               "Two names of fabrics, avatars, solids or soft bodies; the same name twice for contact with itself.");
+    v.required(
+        "between", p.between,
+        "Two names of fabrics, avatars, solids or soft bodies; the same name twice for contact with itself.");
     v.required("friction", p.friction, between(0.0, 10.0), "Coulomb coefficient.");
 }
 
 template <typename V>
 void describe(V& v, Contact& c)
 {
-    v.field("gap", c.gap, between(0.0, 0.1, "m"),
-            "Distance kept between cloth, solid or soft body and avatar, plus half the cloth's thickness. Two "
-            "cloths keep their thickness instead; a solid or soft body adds half of this value.");
+    v.field(
+        "gap", c.gap, between(0.0, 0.1, "m"),
+        "Distance kept between cloth, solid or soft body and avatar, plus half the cloth's thickness. Two "
+        "cloths keep their thickness instead; a solid or soft body adds half of this value.");
     v.field("stiffness", c.stiffness, between(0.001, 1000.0), "Factor on the solver's default stiffness.");
     v.field("friction", c.friction, between(0.0, 10.0),
             "Coulomb coefficient of avatars, solids and soft bodies without their own, and between cloths.");
@@ -585,9 +587,11 @@ void describe(V& v, scenes::Scene& s)
             "Bodies that deform, simulated together with the cloth. Need contact.self.");
     v.field("fabrics", s.fabrics, "Fabrics of the scene's own, by name.");
     v.field("attachments", s.attachments, "Vertices attached to the world or to avatars.");
-    v.field("contact", s.contact, "Contact of cloth, solids and soft bodies with avatars, themselves and each other.");
+    v.field("contact", s.contact,
+            "Contact of cloth, solids and soft bodies with avatars, themselves and each other.");
     v.field("solver", s.solver, "Accuracy and effort.");
-    v.field("export", s.exports, "Caches to write; empty: one PC2 per cloth, solid and soft body, named after it.");
+    v.field("export", s.exports,
+            "Caches to write; empty: one PC2 per cloth, solid and soft body, named after it.");
     v.field("render", s.render, "Preview pictures.");
 }
 

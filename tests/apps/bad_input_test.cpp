@@ -24,7 +24,8 @@ void write_soft_body(const TemporaryFolder& folder, const std::string& name, con
 {
     folder.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
     folder.write(name + ".json", R"({"toile": 1, "frames": 3, "cloths": [],
-"soft_bodies": [{"name": "b", "file": "triangle.obj", )" + keys + "}]}");
+"soft_bodies": [{"name": "b", "file": "triangle.obj", )" +
+                                     keys + "}]}");
 }
 
 /// Writes the skinned column of the avatar tests with a joint that points to a missing node.

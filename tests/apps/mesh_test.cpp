@@ -21,8 +21,8 @@ std::string cube(const std::string& size)
         return line + "\n";
     };
     std::string obj;
-    for (const auto& side : {std::array{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1},
-                             {4, 5, 7, 6}}) {
+    for (const auto& side :
+         {std::array{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}) {
         for (const int bits : side)
             obj += corner(bits);
         obj += "f -4 -3 -2 -1\n";
@@ -91,7 +91,8 @@ TEST_F(Mesh, RefusesInOneLineAndWritesNothing)
         {{"cube.obj", "--cell", "0.02", "--unit", "ell", "-o", "o.msh"}, {"--unit", "ell", "cm"}},
         {{"open.obj", "--cell", "0.02", "-o", "o.msh"},
          {"open.obj: the edge from (0, 0, 0.1) to ", "one triangle only", "closed surface"}},
-        {{"crossing.obj", "--cell", "0.02", "-o", "o.msh"}, {"crossing.obj: the surface crosses itself near ("}},
+        {{"crossing.obj", "--cell", "0.02", "-o", "o.msh"},
+         {"crossing.obj: the surface crosses itself near ("}},
         {{"empty.obj", "--cell", "0.02", "-o", "o.msh"}, {"empty.obj: is no OBJ", "f 1 2 3"}},
         {{"none.obj", "--cell", "0.02", "-o", "o.msh"}, {"none.obj"}},
         {{"cube.obj", "--cell", "0.02", "-o", "o.vtk"}, {"o.vtk", ".msh"}},
