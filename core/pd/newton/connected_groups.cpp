@@ -1,7 +1,9 @@
 #include "core/pd/newton/connected_groups.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace toile {
@@ -140,6 +142,59 @@ Groups connected_groups(const Links& links, View<const int> labels, View<const i
         for (const int i : groups[g].items)
             result.of[i] = result.count();
         result.label.push_back(groups[g].label);
+    }
+    return result;
+}
+
+Groups joined_groups(const Links& links, const Groups& groups, View<const int> weights, int count,
+                     int largest)
+{
+    const Links between = links_between(links, groups);
+    std::vector<std::map<int, int>> linked(groups.count()); // how often with each other group
+    for (int g = 0; g < groups.count(); ++g)
+        for (const int other : between.of(g))
+            ++linked[g][other];
+    std::vector<int> weight = sums_of(groups, weights);
+    std::set<std::pair<int, int>> by_weight;
+    for (int g = 0; g < groups.count(); ++g)
+        by_weight.emplace(weight[g], g);
+
+    std::vector<int> joins(groups.count(), -1);
+    for (int left = groups.count(); left > count && !by_weight.empty();) {
+        const int g = by_weight.begin()->second;
+        by_weight.erase(by_weight.begin());
+        int to = -1;
+        for (const auto& [other, times] : linked[g])
+            if (weight[g] + weight[other] <= largest &&
+                (to < 0 || double(times) / weight[other] > double(linked[g][to]) / weight[to]))
+                to = other;
+        if (to < 0)
+            continue;
+        for (const auto& [other, times] : linked[g]) {
+            linked[other].erase(g);
+            if (other != to) {
+                linked[other][to] += times;
+                linked[to][other] += times;
+            }
+        }
+        by_weight.erase({weight[to], to});
+        weight[to] += weight[g];
+        by_weight.emplace(weight[to], to);
+        joins[g] = to;
+        --left;
+    }
+
+    Groups result{groups.of, {}};
+    std::vector<int> number(groups.count(), -1);
+    for (int g = 0; g < groups.count(); ++g)
+        if (joins[g] < 0) {
+            number[g] = result.count();
+            result.label.push_back(groups.label[g]);
+        }
+    for (int& g : result.of) {
+        while (g >= 0 && joins[g] >= 0)
+            g = joins[g];
+        g = g < 0 ? -1 : number[g];
     }
     return result;
 }

@@ -42,6 +42,14 @@ struct Groups {
 Groups connected_groups(const Links& links, View<const int> labels, View<const int> weights, int smallest,
                         int largest);
 
+/// Joins groups until there are `count`, or no more can be joined: the lightest first, each with the one that
+/// it has most links to by weight.
+/// @param links    between items
+/// @param weights  [items]
+/// @param largest  weight of joined groups
+Groups joined_groups(const Links& links, const Groups& groups, View<const int> weights, int count,
+                     int largest);
+
 /// Links between groups, one for each between their items.
 Links links_between(const Links& links, const Groups& groups);
 

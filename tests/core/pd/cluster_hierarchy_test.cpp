@@ -138,6 +138,8 @@ TEST(ClusterHierarchy, HasConnectedBlocksAndRegionsWhereABodyIsFolded)
         EXPECT_EQ(connected_components(links, excluded).size(), 1U);
     };
     ASSERT_EQ(hierarchy.component_count(), 28);
+    EXPECT_EQ(hierarchy.first_region()[1], ClusterHierarchy::kMaxUnknownsOfMany / hierarchy.unknown_count())
+        << "as many regions as are allowed";
     EXPECT_EQ(ClusterHierarchy::max_unknowns(28), ClusterHierarchy::kMaxUnknownsOfMany);
     for (int k = 0; k < hierarchy.component_count(); ++k)
         EXPECT_LE(hierarchy.unknown_count() * (hierarchy.first_region()[k + 1] - hierarchy.first_region()[k]),
@@ -232,7 +234,7 @@ TEST(ClusterHierarchy, RepresentsAffineFieldsOfAVolume)
     grids.add(200, 150);
     for (EmbeddedPoint& p : grids.points)
         p[2] = 0.2 * std::sin(10.0 * p[0]) * std::cos(10.0 * p[1]);
-    expect_affine_fields(grids, Extent::Volume, 256); // 235 regions of 128 would be too many
+    expect_affine_fields(grids, Extent::Volume, 156); // 192 regions; 235 of 128 would be too many
 }
 
 TEST(HessianPattern, FindsEveryEntryAndNoOther)

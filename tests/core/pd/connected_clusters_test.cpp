@@ -115,6 +115,24 @@ TEST(ConnectedGroups, OneLabelMakesAGroupForEachPiece)
     EXPECT_EQ(groups.of, (std::vector<int>{0, 0, 1, -1, 2}));
 }
 
+TEST(ConnectedGroups, AreJoinedToANumberTheLightestFirst)
+{
+    // A path of groups of weights 4, 1, 2, 3, and one group that is linked to none.
+    const Links links =
+        links_of(11, {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}, {6, 7}, {7, 8}, {8, 9}});
+    const Groups groups{{0, 0, 0, 0, 1, 2, 2, 3, 3, 3, 4}, {10, 11, 12, 13, 14}};
+    const std::vector<int> ones(11, 1);
+    const auto joined = [&](int count, int largest) {
+        return joined_groups(links, groups, ones, count, largest);
+    };
+    EXPECT_EQ(joined(5, 11).of, groups.of);
+    EXPECT_EQ(joined(4, 11).of, (std::vector<int>{0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 3}));
+    EXPECT_EQ(joined(4, 11).label, (std::vector<int>{10, 12, 13, 14}));
+    EXPECT_EQ(sums_of(joined(3, 11), ones), (std::vector<int>{4, 6, 1}));
+    EXPECT_EQ(joined(1, 11).count(), 2) << "what nothing links stays apart";
+    EXPECT_EQ(joined(1, 3).count(), 4) << "no larger group has room";
+}
+
 TEST(AffineFunctions, AreOrthonormalAndZeroWhereTheyDepend)
 {
     const Hairpin hairpin(10); // of the first half, all vertices lie in a plane

@@ -33,6 +33,18 @@ Component component_of_clusters(const Links& links, const Groups& clusters, int 
     return component;
 }
 
+/// Connected items of one number, once this is divided by 2^levels.
+Groups groups_by(int levels, const Links& links, std::vector<int> numbers, View<const int> weights,
+                 int smallest)
+{
+    for (int& number : numbers)
+        number >>= levels;
+    return connected_groups(links, numbers, weights, smallest, ClusterHierarchy::kBlockClusters);
+}
+
+/// Clusters of a block that joins no other.
+constexpr int kSmallestBlock = ClusterHierarchy::kBlockClusters / 4;
+
 /// Regions and blocks of a component, one of which consist of the other.
 struct Nested {
     std::vector<int> region, block; ///< [clusters]
@@ -40,43 +52,48 @@ struct Nested {
     std::vector<int> order; ///< clusters, those of a region and of a block one after the other
 };
 
-/// @param rise  levels of the tree from clusters to regions
-Nested nested_groups(const Component& component, int rise)
+std::vector<int> order_by(const std::vector<int>& coarser, const std::vector<int>& finer)
 {
-    const int fine = std::min(rise, kBlockLevels), coarse = std::max(rise, kBlockLevels);
-    // A block has a bound; regions of more clusters than a block may grow, so that none stays small.
-    const auto groups = [](const Links& links, std::vector<int> numbers, const std::vector<int>& weights,
-                           int levels, int to) {
-        for (int& number : numbers)
-            number >>= levels;
-        const int clusters = 1 << to, smallest = std::max(2, clusters / 4);
-        const int largest = to <= kBlockLevels ? ClusterHierarchy::kBlockClusters : 2 * clusters;
-        return connected_groups(links, numbers, weights, smallest, largest);
-    };
-    const std::vector<int> ones(component.numbers.size(), 1);
-    const Groups finer = groups(component.links, component.numbers, ones, fine, fine);
-    const Groups coarser = groups(links_between(component.links, finer), finer.label, sums_of(finer, ones),
-                                  coarse - fine, coarse);
-    std::vector<int> coarser_of, order(ones.size());
-    for (const int group : finer.of)
-        coarser_of.push_back(coarser.of[group]);
+    std::vector<int> order(finer.size());
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](int a, int b) {
-        return std::tie(coarser_of[a], finer.of[a], a) < std::tie(coarser_of[b], finer.of[b], b);
+        return std::tie(coarser[a], finer[a], a) < std::tie(coarser[b], finer[b], b);
     });
-    if (rise <= kBlockLevels)
-        return {finer.of, coarser_of, finer.count(), order};
-    return {coarser_of, finer.of, coarser.count(), order};
+    return order;
+}
+
+/// @param levels  of the tree from clusters to regions
+Nested regions_in_blocks(const Component& component, int levels, int max_regions)
+{
+    const std::vector<int> ones(component.numbers.size(), 1);
+    const Groups regions = joined_groups(
+        component.links,
+        groups_by(levels, component.links, component.numbers, ones, std::max(2, (1 << levels) / 4)), ones,
+        max_regions, ClusterHierarchy::kBlockClusters);
+    const Groups blocks = groups_by(kBlockLevels - levels, links_between(component.links, regions),
+                                    regions.label, sums_of(regions, ones), kSmallestBlock);
+    std::vector<int> block;
+    for (const int region : regions.of)
+        block.push_back(blocks.of[region]);
+    return {regions.of, block, regions.count(), order_by(block, regions.of)};
+}
+
+Nested regions_of_blocks(const Component& component, int max_regions)
+{
+    const std::vector<int> ones(component.numbers.size(), 1);
+    const Groups blocks = groups_by(kBlockLevels, component.links, component.numbers, ones, kSmallestBlock);
+    const Groups regions = joined_groups(component.links, blocks, ones, max_regions, int(ones.size()));
+    return {regions.of, blocks.of, regions.count(), order_by(regions.of, blocks.of)};
 }
 
 /// Those with as many regions as is possible.
 Nested finest_groups(const Component& component, int max_regions)
 {
-    int rise = 1;
-    Nested nested = nested_groups(component, rise);
-    while (nested.region_count > max_regions)
-        nested = nested_groups(component, ++rise);
-    return nested;
+    for (int levels = 1; levels < kBlockLevels; ++levels)
+        if (Nested nested = regions_in_blocks(component, levels, max_regions);
+            nested.region_count <= max_regions)
+            return nested;
+    return regions_of_blocks(component, max_regions);
 }
 
 } // namespace

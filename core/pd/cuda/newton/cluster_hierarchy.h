@@ -12,9 +12,9 @@ namespace toile {
 /// Clusters of vertices, nested regions of clusters, and on each of both three or four functions, close to 1
 /// and the coordinates along the axes of its extent: the coarse spaces of an additive preconditioner.
 /// Clusters are ConnectedClusters of a matrix. Up to 16 of them, connected and near each other, form a
-/// *block*. A component of more clusters also has *regions*: connected sets of two, four or more clusters, as
-/// small as is possible with up to max_unknowns(), three a function. A solver inverts the couplings within a
-/// block, and those between all regions of a component.
+/// *block*. A component of more clusters also has *regions*: connected sets of two or more clusters,
+/// as many as max_unknowns() allows, three a function. A solver inverts the couplings within a block, and
+/// those between all regions of a component.
 class ClusterHierarchy {
 public:
     static constexpr int kClusterSize = ConnectedClusters::kSize;
