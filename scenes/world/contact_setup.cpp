@@ -40,6 +40,7 @@ std::vector<FrictionBody> friction_bodies_of(const Scene& scene, const std::vect
                                              const SceneSoftBodies* soft_bodies, const SceneSolids* solids)
 {
     std::vector<FrictionBody> all;
+    all.reserve(cloths.size());
     for (const SceneCloth& cloth : cloths)
         all.push_back({cloth_named(scene, cloth.state().name).fabric, std::nullopt});
     for (int i = 0; soft_bodies && i < soft_bodies->count(); ++i)

@@ -86,9 +86,11 @@ TEST(SceneErrors, SayHowPathsAreWritten)
              {"~/none.obj", variables},
              {"$HOME/none.obj", variables},
              {R"(a b\\none.obj)", "write / between folders, also for Windows"},
-             {R"(C:\\none.obj)", "write / between folders, also for Windows"}})
-        expect_complaints(
-            {{file(path), "bad.json: cloths[0].file: the file \"" + path + "\" does not exist; " + remedy}});
+             {R"(C:\\none.obj)", "write / between folders, also for Windows"}}) {
+        std::string message = "bad.json: cloths[0].file: the file \"";
+        message.append(path).append("\" does not exist; ").append(remedy);
+        expect_complaints({{file(path), message}});
+    }
 }
 
 /// Editors complete and check by it.
