@@ -1,8 +1,8 @@
 #include "core/pd/cuda/newton/cluster_hierarchy.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include "core/quadrature/clusters/orthonormalise.h"
@@ -108,16 +108,12 @@ ClusterHierarchy::ClusterHierarchy(View<const EmbeddedPoint> points, const Block
     const Links between = links_between(links, clusters.groups);
     const std::vector<std::vector<int>> vertices = clusters.vertices();
     const std::vector<int>& first = clusters.first_of_component;
-    const auto has_regions = [&](size_t k) { return first[k + 1] - first[k] > kBlockClusters; };
-    int components = 0;
-    for (size_t k = 0; k + 1 < first.size(); ++k)
-        components += has_regions(k);
     for (size_t k = 0; k + 1 < first.size(); ++k) {
         const View<const std::vector<int>> own(vertices.data() + first[k], first[k + 1] - first[k]);
-        if (has_regions(k)) {
+        if (own.size() > kBlockClusters) {
             const Component component =
                 component_of_clusters(between, clusters.groups, first[k], first[k + 1]);
-            const Nested nested = finest_groups(component, max_unknowns(components) / unknown_count());
+            const Nested nested = finest_groups(component, kMaxUnknowns / unknown_count());
             add_component(points, own, nested.order, nested.region, nested.block);
         } else {
             for (const std::vector<int>& cluster : own) // one block
@@ -131,19 +127,12 @@ ClusterHierarchy::ClusterHierarchy(View<const EmbeddedPoint> points, const Block
     component_of_.resize(region_count());
     for (int k = 0; k < component_count(); ++k)
         std::fill(component_of_.begin() + first_region_[k], component_of_.begin() + first_region_[k + 1], k);
-    block_of_.assign(cluster_count(), -1);
-    for (int b = 0; b < block_count(); ++b)
-        std::fill(block_of_.begin() + first_of_block_[b], block_of_.begin() + first_of_block_[b + 1], b);
     region_of_.assign(cluster_count(), -1);
     transfers_.resize(cluster_count());
     for (int r = 0; r < region_count(); ++r)
         find_transfers(points, r);
     find_neighbours(blocks, isotropic);
-}
-
-int ClusterHierarchy::max_unknowns(int components)
-{
-    return std::max(kMaxUnknownsOfMany, int(kMaxUnknowns / std::cbrt(double(components))));
+    find_members();
 }
 
 void ClusterHierarchy::add_cluster(View<const EmbeddedPoint> points, const std::vector<int>& vertices)
@@ -212,9 +201,9 @@ void ClusterHierarchy::add_others(const std::vector<int>& vertices)
 void ClusterHierarchy::find_neighbours(const BlockMatrix& blocks, const SparseMatrix& isotropic)
 {
     first_neighbour_.assign(1, 0);
-    for (int c = 0; c < cluster_count(); ++c) {
-        std::vector<int> found(block_of_[c] >= 0 ? 1 : 0, c);
-        for (int k = first_vertex_[c]; block_of_[c] >= 0 && k < first_vertex_[c + 1]; ++k) {
+    for (int c = 0; c < first_of_block_.back(); ++c) {
+        std::vector<int> found(1, c);
+        for (int k = first_vertex_[c]; k < first_vertex_[c + 1]; ++k) {
             const int i = vertices_[k];
             for (const int j : blocks.columns(i))
                 found.push_back(cluster_of_[j]);
@@ -225,6 +214,45 @@ void ClusterHierarchy::find_neighbours(const BlockMatrix& blocks, const SparseMa
         found.erase(std::unique(found.begin(), found.end()), found.end());
         neighbours_.insert(neighbours_.end(), found.begin(), found.end());
         first_neighbour_.push_back(int(neighbours_.size()));
+    }
+    first_neighbour_.resize(cluster_count() + 1, int(neighbours_.size()));
+}
+
+bool ClusterHierarchy::is_part_of_region(int first_cluster, int end_cluster) const
+{
+    const int region = region_of_[first_cluster];
+    if (region < 0)
+        return false;
+    const Range range = clusters_of_region_[region];
+    return range.first <= first_cluster && end_cluster <= range.end &&
+           end_cluster - first_cluster < range.end - range.first;
+}
+
+void ClusterHierarchy::find_members()
+{
+    std::vector<std::vector<Copy>> copies(cluster_count());
+    for (size_t b = 0; b + 1 < first_of_block_.size(); ++b) {
+        const int begin = first_of_block_[b], end = first_of_block_[b + 1];
+        std::vector<int> clusters(end - begin);
+        std::iota(clusters.begin(), clusters.end(), begin);
+        if (is_part_of_region(begin, end)) {
+            const std::set<int> near(neighbours_.begin() + first_neighbour_[begin],
+                                     neighbours_.begin() + first_neighbour_[end]);
+            if (int(near.size()) <= kMaxBlockClusters)
+                clusters.assign(near.begin(), near.end());
+        }
+        for (size_t place = 0; place < clusters.size(); ++place) {
+            members_.push_back({clusters[place], -1});
+            copies[clusters[place]].push_back({int(b), int(place)});
+        }
+        first_member_.push_back(int(members_.size()));
+    }
+    for (const std::vector<Copy>& of_cluster : copies) {
+        for (const Copy& copy : of_cluster) {
+            members_[first_member_[copy.block] + copy.place].copy = int(copies_.size());
+            copies_.push_back(copy);
+        }
+        first_copy_.push_back(int(copies_.size()));
     }
 }
 

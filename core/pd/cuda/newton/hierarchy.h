@@ -13,7 +13,7 @@ namespace toile {
 ///
 ///   p D^-1 p^T + q E^-1 q^T,
 ///
-/// D the blocks of p^T K p, and E those of q^T K q that belong to one component.
+/// D the blocks of p^T K p, which may overlap, and E those of q^T K q that belong to one component.
 class DeviceHierarchy {
 public:
     /// @param space  borrowed
@@ -41,13 +41,15 @@ private:
     std::vector<PaddedVec3> functions_on_host_;
     DeviceArray<int> first_vertex_, vertices_, cluster_of_;
     DeviceArray<PaddedVec3> functions_;
-    DeviceArray<int> first_neighbour_, neighbours_, first_of_block_, block_of_;
+    DeviceArray<int> first_neighbour_, neighbours_, first_member_, first_copy_;
+    DeviceArray<ClusterHierarchy::Member> members_;
+    DeviceArray<ClusterHierarchy::Copy> copies_;
     DeviceArray<int> first_region_, component_of_, region_of_;
     DeviceArray<ClusterHierarchy::Transfer> transfers_;
     DeviceArray<ClusterHierarchy::Range> clusters_of_region_;
-    BatchedInverses inverses_;                                              ///< see HierarchyView
-    DeviceArray<double> couplings_;                                         ///< see AssembleClusters
-    DeviceArray<float> restricted_, to_regions_, of_clusters_, of_regions_; ///< see ClusterFields
+    BatchedInverses inverses_;                                            ///< see HierarchyView
+    DeviceArray<double> couplings_;                                       ///< see AssembleClusters
+    DeviceArray<float> restricted_, to_regions_, of_copies_, of_regions_; ///< see ClusterFields
 };
 
 } // namespace toile

@@ -18,11 +18,13 @@ struct HierarchyView {
     static constexpr int kMaxUnknowns = 3 * kMaxFunctions;
 
     int functions_of_cluster;
-    View<const int> first_vertex, vertices;           ///< [clusters + 1], [vertices]
-    View<const int> cluster_of;                       ///< [vertices]
-    View<const PaddedVec3> functions;                 ///< [vertices]; zero where fixed
-    View<const int> first_neighbour, neighbours;      ///< [clusters + 1]
-    View<const int> first_of_block, block_of;         ///< [blocks + 1], [clusters]
+    View<const int> first_vertex, vertices;      ///< [clusters + 1], [vertices]
+    View<const int> cluster_of;                  ///< [vertices]
+    View<const PaddedVec3> functions;            ///< [vertices]; zero where fixed
+    View<const int> first_neighbour, neighbours; ///< [clusters + 1]
+    View<const int> first_member, first_copy;    ///< [blocks + 1], [clusters + 1]
+    View<const ClusterHierarchy::Member> members;
+    View<const ClusterHierarchy::Copy> copies;
     View<const int> first_region, component_of;       ///< [components + 1], [regions]
     View<const int> region_of;                        ///< [clusters]
     View<const ClusterHierarchy::Transfer> transfers; ///< [clusters]
@@ -32,7 +34,7 @@ struct HierarchyView {
     TOILE_HD int unknowns() const { return 3 * functions_of_cluster; } ///< function by function, x, y, z
     TOILE_HD int pairs() const { return unknowns() * unknowns(); }
     TOILE_HD int cluster_count() const { return first_vertex.size() - 1; }
-    TOILE_HD int block_count() const { return first_of_block.size() - 1; }
+    TOILE_HD int block_count() const { return first_member.size() - 1; }
 
     TOILE_HD bool are_neighbours(int c, int d) const
     {
@@ -54,7 +56,7 @@ struct HierarchyView {
 ///
 ///   K_ab = sum_ij f_a(i) f_b(j) K_ij,
 ///
-/// also in the matrix of its block. Of the Hessian's differences only what leaves a cluster acts on its
+/// also in the matrices of its blocks. Of the Hessian's differences only what leaves a cluster acts on its
 /// constants: no stiff blocks cancel there. Contact between clusters that are no neighbours acts on each as
 /// contact with something fixed.
 struct AssembleClusters {
@@ -173,14 +175,15 @@ private:
     }
     TOILE_HD void store(int c, int at, int pair, double value) const
     {
-        const int unknowns = clusters.unknowns();
+        const int unknowns = clusters.unknowns(), neighbour = clusters.neighbours[at];
         couplings[at * clusters.pairs() + pair] = value;
-        const int neighbour = clusters.neighbours[at], matrix = clusters.block_of[c];
-        if (clusters.block_of[neighbour] != matrix)
-            return;
-        const int first = clusters.first_of_block[matrix];
-        clusters.matrices.entry(matrix, unknowns * (c - first) + pair / unknowns,
-                                unknowns * (neighbour - first) + pair % unknowns) = value;
+        for (int k = clusters.first_copy[c]; k < clusters.first_copy[c + 1]; ++k)
+            for (int l = clusters.first_copy[neighbour]; l < clusters.first_copy[neighbour + 1]; ++l) {
+                const ClusterHierarchy::Copy own = clusters.copies[k], other = clusters.copies[l];
+                if (own.block == other.block)
+                    clusters.matrices.entry(own.block, unknowns * own.place + pair / unknowns,
+                                            unknowns * other.place + pair % unknowns) = value;
+            }
     }
 };
 
@@ -229,7 +232,7 @@ struct MultiplyInverses {
 
     HierarchyView clusters;
     View<const float> restricted, to_regions; ///< see ClusterFields
-    View<float> of_clusters, of_regions;      ///< [clusters], [regions][unknowns] out
+    View<float> of_copies, of_regions;        ///< [copies], [regions][unknowns] out
 
     /// The first columns of the inverse, which does not change.
     using Prologue = std::array<Floats<4>, kColumns>;
@@ -275,10 +278,11 @@ struct MultiplyInverses {
         float total = 0.0F;
         for (int g = 0; g < kGroups; ++g)
             total += sums[g * kRows + block.thread];
+        const int unknowns = clusters.unknowns();
         if (component < 0)
-            of_clusters[clusters.unknowns() * clusters.first_of_block[tile.matrix] + row] = total;
+            of_copies[unknowns * member(tile.matrix, row / unknowns).copy + row % unknowns] = total;
         else
-            of_regions[clusters.unknowns() * clusters.first_region[component] + row] = total;
+            of_regions[unknowns * clusters.first_region[component] + row] = total;
     }
 
 private:
@@ -314,11 +318,16 @@ private:
     template <typename Block>
     TOILE_HD int load_block(const Block& block, int matrix, int stride, float* x) const
     {
-        const int first = clusters.unknowns() * clusters.first_of_block[matrix];
-        const int size = clusters.unknowns() * clusters.first_of_block[matrix + 1] - first;
+        const int unknowns = clusters.unknowns();
+        const int size = unknowns * (clusters.first_member[matrix + 1] - clusters.first_member[matrix]);
         for (int k = block.thread; k < stride; k += kThreads)
-            x[k] = k < size ? restricted[first + k] : 0.0F;
+            x[k] =
+                k < size ? restricted[unknowns * member(matrix, k / unknowns).cluster + k % unknowns] : 0.0F;
         return size;
+    }
+    TOILE_HD ClusterHierarchy::Member member(int matrix, int place) const
+    {
+        return clusters.members[clusters.first_member[matrix] + place];
     }
     template <typename Block>
     TOILE_HD int load_component(const Block& block, int component, int stride, float* x) const
@@ -346,9 +355,9 @@ struct ClusterFields {
     HierarchyView clusters;
     View<float> restricted; ///< [clusters][unknowns]
     View<float> to_regions; ///< [clusters][unknowns] what each adds to its region's restriction
-    View<const float> of_clusters, of_regions; ///< see MultiplyInverses
+    View<const float> of_copies, of_regions; ///< see MultiplyInverses
 
-    /// Coefficients of the functions at a cluster's vertices: the sum of both parts.
+    /// Coefficients of the functions at a cluster's vertices: the sum of all parts.
     struct Coefficients {
         PaddedVec3 of[kMaxFunctions];
 
@@ -365,14 +374,15 @@ struct ClusterFields {
         Coefficients sum;
         for (PaddedVec3& coefficient : sum.of)
             coefficient = PaddedVec3(0.0F);
-        if (clusters.block_of[c] < 0)
-            return sum;
         const int functions = clusters.functions_of_cluster, region = clusters.region_of[c];
         const auto& T = clusters.transfers[c].entry;
+        for (int k = clusters.first_copy[c]; k < clusters.first_copy[c + 1]; ++k)
+            for (int b = 0; b < kMaxFunctions; ++b)
+                if (b < functions)
+                    sum.of[b] += load(of_copies, k, b);
         for (int b = 0; b < kMaxFunctions; ++b)
-            if (b < functions) {
-                sum.of[b] += load(of_clusters, c, b);
-                const PaddedVec3 y = region >= 0 ? load(of_regions, region, b) : PaddedVec3(0.0F);
+            if (b < functions && region >= 0) {
+                const PaddedVec3 y = load(of_regions, region, b);
                 for (int a = 0; a < kMaxFunctions; ++a)
                     sum.of[a] += T[a][b] * y;
             }
