@@ -303,6 +303,7 @@ std::string cache_text(const auto& shape)
 void print_scene(const std::filesystem::path& file)
 {
     const scenes::Scene scene = scenes::read_scene(file);
+    const scenes::SceneCosts costs = scenes::expected_costs(scene, true);
     print("name", scene.name);
     if (!scene.description.empty())
         print("description", scene.description);
@@ -320,8 +321,6 @@ void print_scene(const std::filesystem::path& file)
                                (body.core ? ", around a core" : "") + ", " + short_text(body.young) +
                                " Pa, " + short_text(body.density) + " kg/m^3");
     print("attachments", scene.attachments.size());
-    std::cout.flush();
-    const scenes::SceneCosts costs = scenes::expected_costs(scene, true);
     if (costs.parts == 0)
         return;
     print("simulated vertices", costs.vertex_count());

@@ -66,6 +66,7 @@ TEST(Simulate, ObeysOptionsAndTheExportList)
     EXPECT_EQ(report["frames"][0]["steps"], 4);
     EXPECT_GT(report["peak_memory_bytes"], 1e6);
     EXPECT_FALSE(report["stages"].empty());
+    EXPECT_FALSE(report["start"]["repaired"]) << "nothing was wrong";
 }
 
 TEST(Simulate, ReportsTheRepairOfTheStartPose)
@@ -196,6 +197,17 @@ TEST(Render, TakesAPictureASheetAndAFolder)
     EXPECT_TRUE(is_png("many/frame_0001.png"));
     EXPECT_TRUE(is_png("many/frame_0003.png"));
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "many/frame_0004.png"));
+}
+
+TEST(Info, PrintsNothingOfASceneWhoseMeshIsMissing)
+{
+    const TemporaryFolder folder;
+    folder.write("jelly.json", R"({"toile": 1, "frames": 1, "cloths": [], "soft_bodies": [
+        {"name": "jelly", "file": "none.msh", "young": 250, "density": 900}]})");
+    const Finished run = run_toile({"info", "jelly.json"}, folder.path());
+    EXPECT_NE(run.exit_code, 0);
+    EXPECT_EQ(run.output, "");
+    EXPECT_NE(run.errors.find("none.msh"), std::string::npos) << run.errors;
 }
 
 TEST(Info, DescribesEveryKindOfFile)
