@@ -121,7 +121,7 @@ TEST(ClusterHierarchy, HasBlocksAndRegionsOfClustersOfOneComponent)
     const ClusterHierarchy hierarchy = several().hierarchy();
     for (int b = 0; b < hierarchy.block_count(); ++b) {
         const std::vector<int> clusters = clusters_of_block(hierarchy, b);
-        EXPECT_LE(clusters.size(), size_t(ClusterHierarchy::kMaxBlockClusters));
+        EXPECT_LE(clusters.size(), size_t(ClusterHierarchy::kBlockClusters));
         EXPECT_TRUE(std::is_sorted(clusters.begin(), clusters.end()));
     }
     for (int c = 0; c < hierarchy.cluster_count(); ++c)
@@ -202,6 +202,7 @@ TEST(ClusterHierarchy, HasOverlappingBlocksWhereALargeBodyIsThin)
         std::vector<int> own; // clusters that no other block has
         std::copy_if(clusters.begin(), clusters.end(), std::back_inserter(own),
                      [&](int c) { return copy_count(overlapping, c) == 1; });
+        EXPECT_LE(clusters.size(), size_t(ClusterHierarchy::kMaxBlockClusters));
         const std::vector<int> near = with_neighbours(overlapping, own);
         EXPECT_TRUE(std::includes(clusters.begin(), clusters.end(), near.begin(), near.end()));
         EXPECT_GE(clusters.size(), own.size() + 2) << "its own at an end, and the next";
