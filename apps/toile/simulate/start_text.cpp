@@ -135,7 +135,7 @@ std::string start_text(const collision::StartReport& report, const scenes::Scene
 
 nlohmann::ordered_json start_json(const collision::StartReport& report, const scenes::Scene& scene)
 {
-    nlohmann::ordered_json json = {{"repaired", report.was_repaired && report.max_move > 0.0},
+    nlohmann::ordered_json json = {{"repaired", report.max_move > 0.0},
                                    {"vertices_inside", report.vertices_inside()},
                                    {"places_inside", report.count(Kind::InsideBody)},
                                    {"avatar_crossings", report.count(Kind::CrossesBody)},

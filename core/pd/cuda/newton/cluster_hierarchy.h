@@ -29,7 +29,7 @@ public:
     struct Member {
         int cluster, copy;
     };
-    /// Block that a copy belongs to, and its place among the members.
+    /// Block that a copy belongs to, and its place among the block's members.
     struct Copy {
         int block, place;
     };

@@ -228,6 +228,7 @@ struct MultiplyInverses {
     static constexpr int kThreads = kGroups * kRows / 4;
     static constexpr int kColumns = 6; ///< of a group, loaded ahead
     static constexpr int kMaxSize = ClusterHierarchy::kMaxUnknowns;
+    static_assert(ClusterHierarchy::kMaxBlockClusters * HierarchyView::kMaxUnknowns <= kMaxSize);
     static constexpr std::size_t kBytes = sizeof(float) * (kMaxSize + kGroups * kRows);
 
     HierarchyView clusters;
