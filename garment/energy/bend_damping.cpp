@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/base/error.h"
-#include "core/compute/parallel.h"
+#include "core/compute/parallel_lanes.h"
 #include "garment/energy/cuda/bend_damping.h"
 
 namespace toile::garment {
@@ -137,7 +137,7 @@ void BendDamping::begin_step(View<const Vec3> x, double dt)
 {
     dt_ = dt;
     const int count = int(hinges_.size());
-    parallel_for(kCpu, "bend_damping/start", lane_blocks(count), [&](int block) {
+    parallel_for_lanes(kCpu, "bend_damping/start", count, [&](int block) {
         const Lanes s = folds(x, block).s;
         for (int k = 0; k < std::min(kLanes, count - block * kLanes); ++k) {
             const int h = block * kLanes + k;
@@ -151,7 +151,7 @@ double BendDamping::add_gradient(View<const Vec3> x, View<Vec3> gradient)
     if (dt_ == 0.0)
         return 0.0;
     const int count = int(hinges_.size());
-    parallel_for(kCpu, "bend_damping/fold", lane_blocks(count), [&](int block) {
+    parallel_for_lanes(kCpu, "bend_damping/fold", count, [&](int block) {
         const Fold<Lanes> fold = folds(x, block);
         const HingeResponse<Lanes> change = response(fold, block);
         const Vec3Of<Lanes>* const by[4] = {&fold.v0, &fold.v1, &fold.a, &fold.b};
@@ -195,7 +195,7 @@ void BendDamping::add_isotropic_curvature(View<const Vec3> x, SparseWindow S)
     if (dt_ == 0.0)
         return;
     const int count = int(hinges_.size());
-    parallel_for(kCpu, "bend_damping/stiffness", lane_blocks(count), [&](int block) {
+    parallel_for_lanes(kCpu, "bend_damping/stiffness", count, [&](int block) {
         const Fold<Lanes> fold = folds(x, block);
         const Lanes stiffness = response(fold, block).stiffness * fold.cosine * fold.cosine;
         for (int k = 0; k < std::min(kLanes, count - block * kLanes); ++k)

@@ -7,7 +7,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
-#include "core/compute/parallel.h"
+#include "core/compute/parallel_lanes.h"
 #include "garment/energy/cuda/elasticity.h"
 
 namespace toile::garment {
@@ -76,7 +76,7 @@ void Membrane::add_hessian(Triplets& H) const
 double Membrane::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 {
     const int triangles = int(rest_->triangles.size());
-    parallel_for(kCpu, "membrane/project", lane_blocks(triangles),
+    parallel_for_lanes(kCpu, "membrane/project", triangles,
                  ProjectMembrane{x, rest_->triangles, rest_inv_, area_, weights_, viscosity(),
                                  corner_gradient_, triangle_energy_});
     const Incidence& corners = rest_->topology.corners_of_vertex;
@@ -98,7 +98,7 @@ void Membrane::begin_step(View<const Vec3> x, double dt)
     if (viscous_.are_zero())
         return;
     start_.resize(rest_inv_.size());
-    parallel_for(kCpu, "membrane/strain", int(start_.size()), [&](int block) {
+    parallel_for_lanes(kCpu, "membrane/strain", int(rest_->triangles.size()), [&](int block) {
         start_[block] =
             green_strain<Lanes>(deformation_gradients(x, rest_->triangles, rest_inv_[block], block));
     });
@@ -119,8 +119,8 @@ void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, Bloc
 {
     const int triangles = int(rest_->triangles.size());
     curvature_.resize(triangles);
-    parallel_for(
-        kCpu, "membrane/curvature", lane_blocks(triangles),
+    parallel_for_lanes(
+        kCpu, "membrane/curvature", triangles,
         CurveMembrane{x, rest_->triangles, rest_inv_, weights_, viscosity(), definiteness, curvature_});
     const Incidence& corners = rest_->topology.corners_of_vertex;
     parallel_for(kCpu, "membrane/gather_curvature", x.size(), [&](int v) {

@@ -6,7 +6,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
-#include "core/compute/parallel.h"
+#include "core/compute/parallel_lanes.h"
 #include "volume/energy/cuda/elastic_solid.h"
 
 namespace toile::volume {
@@ -67,7 +67,7 @@ Mat3Of<Lanes> ElasticSolid::deformation_gradients(View<const Vec3> x, int block)
 double ElasticSolid::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 {
     const int tets = rest_->tet_count();
-    parallel_for(kCpu, "elastic/project", int(blocks_.size()), [&](int block) {
+    parallel_for_lanes(kCpu, "elastic/project", tets, [&](int block) {
         const ElasticResponse<Lanes> response =
             elastic_response<Lanes>(deformation_gradients(x, block), blocks_[block].rest_inv,
                                     blocks_[block].volume, blocks_[block].lame);
@@ -115,7 +115,7 @@ void ElasticSolid::add_curvature(View<const Vec3> x, Definiteness definiteness, 
 {
     const int tets = rest_->tet_count();
     curvature_.resize(tets);
-    parallel_for(kCpu, "elastic/curvature", int(blocks_.size()), [&](int block) {
+    parallel_for_lanes(kCpu, "elastic/curvature", tets, [&](int block) {
         const ElasticBlocks<Lanes> of_eight = elastic_blocks<Lanes>(
             elastic_curvature<Lanes>(deformation_gradients(x, block), blocks_[block].lame,
                                      definiteness == Definiteness::Projected),
