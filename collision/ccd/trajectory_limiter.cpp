@@ -22,6 +22,11 @@ constexpr int kDeflections = 4;
 constexpr int kSweeps = 3;
 constexpr double kMinGapFactor = 1.1;
 
+/// Missing distance up to which a pair is deflected, relative to the longer displacement of its vertices [-].
+/// What slides fast, as a body that blades stir, comes farther into what it slides along. Were it not
+/// deflected it would stick there, with all of its zone, while the rest of it moves on and is crushed.
+constexpr double kDeflected = 0.25;
+
 /// Displacement, relative to max_deflection [-], below which cloth is slow.
 constexpr double kSlow = 0.5;
 
@@ -144,7 +149,7 @@ bool TrajectoryLimiter::separate_pairs()
             }
             const double kept = std::min(kMinGapFactor * settings_.gap.of(pair), pair.distance);
             const double lacking = kept - gap_along(pair.normal, pair.is_edge_edge, end);
-            const bool is_small = lacking <= settings_.max_deflection;
+            const bool is_small = lacking <= std::max(settings_.max_deflection, kDeflected * longest);
             // Against a body cloth slides on, however slowly.
             const bool is_slow = !is_with_body(pair, settings_.first_prescribed) && longest < slow();
             if (lacking > 0.0 && is_small && !is_slow)

@@ -29,7 +29,8 @@ constexpr double kMaxSteps = 1.0 / kNegligible;
 /// Iterations without a lower value after which the minimisation ends. Cloth that is moved back because it
 /// would cross, where contact does not hold it, is pushed there again by the next step. If moving it back
 /// undoes what steps gain, as where a body pulls it through other cloth, the minimisation ends after a few
-/// such setbacks, and the point with the lowest value since the objective last changed is the result.
+/// such setbacks. The result of one that ends unfinished is the point with the lowest value since the
+/// objective last changed.
 constexpr int kStall = 8;
 
 /// A step that contact has moved back may end above its start by a part kRaise of what it had gained [-]. One
@@ -272,7 +273,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
             small = small_with_any_pairs = 0;
         setbacks += start - outcome.value < kKept * gain ? 1 : 0;
     }
-    if (setbacks > settings.max_setbacks) {
+    if (!outcome.converged && kept_value < outcome.value) {
         space.restore();
         outcome.value = space.evaluate();
     }

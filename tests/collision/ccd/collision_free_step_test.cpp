@@ -168,6 +168,22 @@ TEST(CollisionFreeStep, StopsSheetsThatMeetAtAHundredMetresPerSecond)
     }
 }
 
+/// What comes into another sheet by much more than max_deflection, but little of its motion, slides on.
+TEST(CollisionFreeStep, FastSheetsSlideAlongEachOther)
+{
+    const Layers layers(2, 12, 0.002);
+    Stepper stepper(layers);
+    const Vec3 motion(0.02, -0.005, 0.0);
+    std::vector<Vec3> wanted = layers.x;
+    for (size_t v = wanted.size() / 2; v < wanted.size(); ++v)
+        wanted[v] += motion;
+    const std::vector<Vec3> x = stepper.step(layers.x, wanted, wanted);
+    stepper.expect_free(layers.x, x);
+    EXPECT_GT(stepper.held(), CollisionFreeStep::Settings().max_deflection);
+    for (size_t v = x.size() / 2; v < x.size(); ++v)
+        EXPECT_NEAR(x[v].x(), wanted[v].x(), 0.05 * motion.x());
+}
+
 TEST(CollisionFreeStep, LimitsOnlyNearbyVertices)
 {
     const Layers layers(2, 8, 0.002);
