@@ -22,9 +22,10 @@ constexpr int kDeflections = 4;
 constexpr int kSweeps = 3;
 constexpr double kMinGapFactor = 1.1;
 
-/// Missing distance up to which a pair is deflected, relative to the longer displacement of its vertices [-].
-/// What slides fast, as a body that blades stir, comes farther into what it slides along. Were it not
-/// deflected it would stick there, with all of its zone, while the rest of it moves on and is crushed.
+/// Missing distance, along the normal where a pair meets, up to which it is deflected, relative to the
+/// longest displacement of one side as seen from the other [-]. What slides fast, as a body that blades stir,
+/// comes farther into what it slides along. Were it not deflected it would stick there, with all of its zone,
+/// while the rest of it moves on and is crushed.
 constexpr double kDeflected = 0.25;
 
 /// Displacement, relative to max_deflection [-], below which cloth is slow.
@@ -41,6 +42,57 @@ constexpr double kMaxDeviation = 5.0;
 /// Passes that limit the vertices of a pair or short edge in proportion. Vertices still blocked afterwards
 /// move with their zone.
 constexpr int kPasses = 16;
+
+/// Trajectories of a pair's vertices.
+class PairMotion {
+public:
+    PairMotion(const NearPair& pair, View<const Vec3> base, View<const Vec3> displacement)
+        : is_edge_edge_(pair.is_edge_edge)
+    {
+        for (int k = 0; k < 4; ++k) {
+            start_[k] = base[pair.vertex[k]];
+            move_[k] = displacement[pair.vertex[k]];
+        }
+    }
+
+    /// Smallest distance [m] of the sides' corners along n at the end.
+    double end_gap(const Vec3& n) const { return gap_along(n, is_edge_edge_, at(1.0)); }
+
+    /// Direction in which the sides are apart after a fraction of the motion.
+    Vec3 normal_at(double fraction) const { return widest_direction(is_edge_edge_, at(fraction), move_).n; }
+
+    /// Longest displacement of a vertex [m].
+    double longest() const
+    {
+        double longest = 0.0;
+        for (const Vec3& move : move_)
+            longest = std::max(longest, move.norm());
+        return longest;
+    }
+
+    /// Longest displacement of a vertex as seen from one of the other side [m].
+    double relative() const
+    {
+        const int split = first_count(is_edge_edge_);
+        double longest = 0.0;
+        for (int i = 0; i < split; ++i)
+            for (int k = split; k < 4; ++k)
+                longest = std::max(longest, (move_[i] - move_[k]).norm());
+        return longest;
+    }
+
+private:
+    std::array<Vec3, 4> at(double fraction) const
+    {
+        std::array<Vec3, 4> x;
+        for (int k = 0; k < 4; ++k)
+            x[k] = start_[k] + fraction * move_[k];
+        return x;
+    }
+
+    bool is_edge_edge_;
+    std::array<Vec3, 4> start_, move_; ///< [m]
+};
 
 /// Edges of cloth.
 std::vector<ShortEdges::Edge> flexible_edges(const SurfaceEdges& edges, const RigidTrajectories& bodies,
@@ -141,24 +193,26 @@ bool TrajectoryLimiter::separate_pairs()
     for (int sweep = 0; sweep < kSweeps; ++sweep)
         for (const BlockedPair& blocked : blocked_) {
             const NearPair& pair = blocked.pair;
-            std::array<Vec3, 4> end;
-            double longest = 0.0;
-            for (int k = 0; k < 4; ++k) {
-                end[k] = base_[pair.vertex[k]] + displacement_[pair.vertex[k]];
-                longest = std::max(longest, displacement_[pair.vertex[k]].norm());
-            }
+            const PairMotion motion(pair, base_, displacement_);
             const double kept = std::min(kMinGapFactor * settings_.gap.of(pair), pair.distance);
-            const double lacking = kept - gap_along(pair.normal, pair.is_edge_edge, end);
-            const bool is_small = lacking <= std::max(settings_.max_deflection, kDeflected * longest);
+            Vec3 normal = pair.normal;
+            double lacking = kept - motion.end_gap(normal);
+            bool is_small = lacking <= settings_.max_deflection;
+            if (!is_small) {
+                normal = motion.normal_at(blocked.fraction);
+                lacking = kept - motion.end_gap(normal);
+                is_small = lacking <= kDeflected * motion.relative();
+            }
             // Against a body cloth slides on, however slowly.
-            const bool is_slow = !is_with_body(pair, settings_.first_prescribed) && longest < slow();
+            const bool is_slow = !is_with_body(pair, settings_.first_prescribed) && motion.longest() < slow();
             if (lacking > 0.0 && is_small && !is_slow)
-                separate_pair(pair, lacking);
+                separate_pair(pair, lacking * normal);
         }
     return !stale_.is_empty();
 }
 
-void TrajectoryLimiter::separate_pair(const NearPair& pair, double lacking)
+/// @param apart  what the pair's sides are to be moved apart by [m]
+void TrajectoryLimiter::separate_pair(const NearPair& pair, const Vec3& apart)
 {
     const double ahead = mobility_of(pair, true), behind = mobility_of(pair, false);
     for (int k = 0; k < 4; ++k) {
@@ -166,7 +220,7 @@ void TrajectoryLimiter::separate_pair(const NearPair& pair, double lacking)
         if (!may_deflect(v))
             continue;
         const double mobility = k < first_count(pair.is_edge_edge) ? ahead : -behind;
-        displacement_[v] += mobility / (ahead + behind) * lacking * pair.normal;
+        displacement_[v] += mobility / (ahead + behind) * apart;
         deflected_.add(v);
         moved_.add(v);
         stale_.add(v);

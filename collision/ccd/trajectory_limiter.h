@@ -51,7 +51,7 @@ private:
     void update_query();
     void deflect();
     bool separate_pairs();
-    void separate_pair(const NearPair& pair, double lacking);
+    void separate_pair(const NearPair& pair, const Vec3& apart);
     double mobility_of(const NearPair& pair, bool is_first_side) const;
     bool may_deflect(int v) const { return !fixed_[v] && !bodies_.is_rigid(v); }
     void find_fractions(View<const unsigned char> supported);

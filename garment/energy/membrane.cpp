@@ -77,8 +77,8 @@ double Membrane::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 {
     const int triangles = int(rest_->triangles.size());
     parallel_for_lanes(kCpu, "membrane/project", triangles,
-                 ProjectMembrane{x, rest_->triangles, rest_inv_, area_, weights_, viscosity(),
-                                 corner_gradient_, triangle_energy_});
+                       ProjectMembrane{x, rest_->triangles, rest_inv_, area_, weights_, viscosity(),
+                                       corner_gradient_, triangle_energy_});
     const Incidence& corners = rest_->topology.corners_of_vertex;
     parallel_for(kCpu, "membrane/gather", gradient.size(),
                  GatherCorners{corners.first, corners.items, corner_gradient_, gradient});

@@ -180,8 +180,13 @@ TEST(CollisionFreeStep, FastSheetsSlideAlongEachOther)
     const std::vector<Vec3> x = stepper.step(layers.x, wanted, wanted);
     stepper.expect_free(layers.x, x);
     EXPECT_GT(stepper.held(), CollisionFreeStep::Settings().max_deflection);
-    for (size_t v = x.size() / 2; v < x.size(); ++v)
-        EXPECT_NEAR(x[v].x(), wanted[v].x(), 0.05 * motion.x());
+    double mean = 0.0;
+    for (size_t v = x.size() / 2; v < x.size(); ++v) {
+        const double slid = (x[v].x() - layers.x[v].x()) / motion.x();
+        EXPECT_GT(slid, 0.8);
+        mean += slid / (0.5 * double(x.size()));
+    }
+    EXPECT_NEAR(mean, 1.0, 0.05);
 }
 
 TEST(CollisionFreeStep, LimitsOnlyNearbyVertices)
