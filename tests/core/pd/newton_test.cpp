@@ -47,8 +47,8 @@ public:
         x = trial_;
     }
     void retake(double length) override { x = trial_ = before_ + length * direction_; }
-    void keep() override {}
-    void restore() override {}
+    void keep() override { kept_ = x; }
+    void restore() override { x = kept_; }
     bool has_moved() override { return x != trial_; }
     double driving_speed() override { return 1.0; }
     bool are_fixed_moving() override { return true; }
@@ -58,7 +58,7 @@ private:
     static double value(double at) { return 0.5 * at * at; }
 
     double hessian_, error_;
-    double direction_ = 0.0, trial_ = 0.0, before_ = 0.0;
+    double direction_ = 0.0, trial_ = 0.0, before_ = 0.0, kept_ = 0.0;
 };
 
 /// SpringSpace with contact that never is as a direction sees it: its model falls by a hundredth of what each
@@ -174,6 +174,28 @@ TEST(Newton, TakesStepsAgainThatContactMovesBackToHigherValues)
     EXPECT_LT(highest, 1.0);
     EXPECT_GT(looks, outcome.iterations);
     EXPECT_LT(looks, 30);
+}
+
+/// Contact moves back what the last iteration that is allowed gives.
+TEST(Newton, EndsUnfinishedAtTheLowestPoint)
+{
+    constexpr int kIterations = 10;
+    SpringSpace space(20.0, 0.0);
+    double lowest = space.x;
+    int looks = 0;
+    const auto look = [&](MinimiserProgress) {
+        if (++looks < kIterations)
+            lowest = space.x;
+        else
+            space.x = 0.95;
+        return false;
+    };
+    const OuterLoop::Outcome outcome =
+        Newton::minimise(space, {kTolerance, kIterations, kDt, false}, look, false);
+    EXPECT_FALSE(outcome.converged);
+    EXPECT_LT(lowest, 0.7);
+    EXPECT_EQ(space.x, lowest);
+    EXPECT_EQ(outcome.value, 0.5 * lowest * lowest);
 }
 
 } // namespace
