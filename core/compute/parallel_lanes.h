@@ -9,7 +9,7 @@ namespace toile {
 /// parallel_for().
 ///
 /// Everything in the kernel is inlined. By itself a compiler leaves the operators of Lanes as functions in
-/// kernels that have thousands of them, which then take up to 8 times as long.
+/// kernels that have thousands of them, which then take up to 12 times as long.
 template <typename Kernel>
 void parallel_for_lanes(CpuSpace, std::string_view name, int count, const Kernel& kernel)
 {

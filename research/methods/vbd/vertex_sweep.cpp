@@ -108,6 +108,7 @@ SweepLayout lay_out_sweep(const garment::ClothModel& cloth, const SparseMatrix& 
     return layout;
 }
 
+// Inlines the operators of Lanes, as parallel_for_lanes() does.
 [[gnu::flatten]] void DescendVertices::operator()(int b) const
 {
     // Add inertia and the row of K: W_bending = 1/2 x^T K x, whose rows sum to zero.
