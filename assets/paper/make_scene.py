@@ -108,12 +108,12 @@ def ships(folder, count):
 
 
 def funnel(folder, count):
-    """Figure 21: a disk pushes animals through a funnel."""
-    spout, neck, shoulder, top = 0.35, 0.39, 0.46, 0.6 + 0.24 * count  # heights [m]
-    wall = [(0.14, top), (0.14, shoulder), (0.055, neck), (0.055, spout)]
+    """Figure 21, its disk a cone here: a plunger pushes animals through a funnel."""
+    spout, neck, shoulder, top = 0.36, 0.4, 0.57, 0.72 + 0.24 * count  # heights [m]
+    wall = [(0.14, top), (0.14, shoulder), (0.062, neck), (0.062, spout)]
     outline = wall + [(r + 0.02, y) for r, y in reversed(wall)]
-    disk = [(0.135, 0.08), (1e-3, 0.08), (1e-3, 0.0), (0.04, 0.0), (0.135, 0.05)]
-    down = [(0.7, 0.0), (1.3, 0.85 - top), (3.0, 0.415 - top)]
+    plunger = [(0.135, 0.21), (1e-3, 0.21), (1e-3, 0.0), (0.045, 0.0), (0.135, 0.19)]
+    down = [(0.7, 0.0), (1.3, 0.97 - top), (3.2, 0.4 - top)]
     return {
         "name": "Animals through a funnel",
         "frames": 105,
@@ -121,10 +121,10 @@ def funnel(folder, count):
         "avatars": [
             FLOOR,
             glass("funnel", folder.surface("funnel", *revolved(outline, 0.03))),
-            {"name": "disk", "file": folder.surface("disk", *revolved(disk, 0.03)), "friction": 0.1, "color": METAL,
+            {"name": "plunger", "file": folder.surface("plunger", *revolved(plunger, 0.03)), "friction": 0.1, "color": METAL,
              "translate": [0, top, 0], "keyframes": [{"time": t, "translate": [0, y, 0]} for t, y in down]},
         ],
-        "soft_bodies": animals(folder, count, layers(count, 1, (0.0, 0.24), 0.49), young=2e4),
+        "soft_bodies": animals(folder, count, layers(count, 1, (0.0, 0.24), 0.61), young=4e4),
         "render": {"azimuth_deg": 30, "elevation_deg": 10},
     }
 
