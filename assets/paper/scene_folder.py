@@ -57,6 +57,6 @@ class SceneFolder:
     def write(self, name, scene):
         bodies = scene["soft_bodies"]
         path = self.path / f"{name}.json"
-        path.write_text(json.dumps({"toile": 1, "cloths": [], **scene}, indent=1) + "\n")
+        path.write_text(json.dumps({"toile": 1, **scene}, indent=1) + "\n")
         vertices = sum(self.vertices[body["file"]] for body in bodies)
         print(f"{path}: {len(bodies)} bodies, {vertices} vertices, {3 * vertices} degrees of freedom")

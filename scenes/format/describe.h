@@ -581,7 +581,7 @@ void describe(V& v, scenes::Scene& s)
     v.field("settle", s.settle, between(0.0, 600.0, "s"),
             "Time simulated before sample 0, with avatars in their first pose.");
     v.field("avatars", s.avatars, "Bodies that cloth collides with.");
-    v.required("cloths", s.cloths, "Cloths to simulate; at least one, or a solid or soft body.");
+    v.field("cloths", s.cloths, "Cloths to simulate. A scene has one at least, or a solid or soft body.");
     v.field("solids", s.solids, "Rigid bodies simulated together with the cloth. Need contact.self.");
     v.field("soft_bodies", s.soft_bodies,
             "Bodies that deform, simulated together with the cloth. Need contact.self.");

@@ -301,7 +301,7 @@ void check_groups(const Document& document, const std::string& key_path, const C
 void check_cloths(const Document& document, const scenes::Scene& scene)
 {
     if (scene.cloths.empty() && scene.solids.empty() && scene.soft_bodies.empty())
-        document.refuse("cloths", "the list is empty; add a cloth");
+        document.refuse("cloths", "nothing to simulate; add a cloth, a solid or a soft body");
     check_names(document, "cloths", names_of(scene.cloths));
     for (size_t i = 0; i < scene.cloths.size(); ++i) {
         const Cloth& cloth = scene.cloths[i];
