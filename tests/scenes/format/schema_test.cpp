@@ -51,7 +51,7 @@ TEST(SceneSchema, ListsRangesDefaultsAndExclusiveKeys)
     EXPECT_FALSE(solver["properties"]["outer"].contains("default"));
     EXPECT_EQ(solver["properties"]["quality"]["default"], "standard");
     EXPECT_EQ(schema["properties"]["cloths"]["items"]["oneOf"].size(), 4u);
-    EXPECT_EQ(schema["required"], (nlohmann::json{"toile", "frames", "cloths"}));
+    EXPECT_EQ(schema["required"], (nlohmann::json{"toile", "frames"}));
 }
 
 TEST(SceneDocs, NameEveryFabricPreset)

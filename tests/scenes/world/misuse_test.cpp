@@ -135,7 +135,7 @@ TEST(Misuse, InvalidScenesAreRefused)
     };
     const double nan = std::nan("");
     EXPECT_EQ(refused([](Scene&) {}), "");
-    EXPECT_NE(refused([](Scene& s) { s.cloths.clear(); }).find("cloths: the list is empty"),
+    EXPECT_NE(refused([](Scene& s) { s.cloths.clear(); }).find("cloths: nothing to simulate"),
               std::string::npos);
     const std::vector<std::pair<std::string, std::function<void(Scene&)>>> changes{
         {"sheets.json: frames: -4 is out of range; give a number from 1", [](Scene& s) { s.frames = -4; }},
