@@ -108,7 +108,7 @@ def ships(folder, count):
 
 
 def funnel(folder, count):
-    """Figure 21, its disk a cone here: a plunger pushes animals through a funnel."""
+    """Figure 21, with a cone for its disk: a plunger pushes animals through a funnel."""
     spout, neck, shoulder, top = 0.36, 0.4, 0.57, 0.72 + 0.24 * count  # heights [m]
     wall = [(0.14, top), (0.14, shoulder), (0.062, neck), (0.062, spout)]
     outline = wall + [(r + 0.02, y) for r, y in reversed(wall)]
@@ -121,8 +121,9 @@ def funnel(folder, count):
         "avatars": [
             FLOOR,
             glass("funnel", folder.surface("funnel", *revolved(outline, 0.03))),
-            {"name": "plunger", "file": folder.surface("plunger", *revolved(plunger, 0.03)), "friction": 0.1, "color": METAL,
-             "translate": [0, top, 0], "keyframes": [{"time": t, "translate": [0, y, 0]} for t, y in down]},
+            {"name": "plunger", "file": folder.surface("plunger", *revolved(plunger, 0.03)), "friction": 0.1,
+             "color": METAL, "translate": [0, top, 0],
+             "keyframes": [{"time": t, "translate": [0, y, 0]} for t, y in down]},
         ],
         "soft_bodies": animals(folder, count, layers(count, 1, (0.0, 0.24), 0.61), young=4e4),
         "render": {"azimuth_deg": 30, "elevation_deg": 10},
